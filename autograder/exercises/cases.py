@@ -1,0 +1,110 @@
+"""Rotations, translations, points and poses that the exercises' cases are made of, with why each kind is there."""
+
+from itertools import permutations, product
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+from transform_lab import Point, Pose, Quaternion
+
+
+def signed_permutations():
+    """The 24 rotations that map axes onto axes, with exact integer entries.
+
+    The rotations students try first, half turns among them. Exact entries matter: the 1e-16 noise of `cos(pi)` hides
+    formulas that break at a half turn.
+    """
+    rotations = []
+    for order, signs in product(permutations(range(3)), product((1.0, -1.0), repeat=3)):
+        R = np.zeros((3, 3))
+        R[range(3), order] = signs
+        if np.linalg.det(R) > 0:
+            rotations.append(R)
+    return rotations
+
+
+def rotation(rng):
+    """A generic rotation, uniform over all of them; three in five have trace <= 0."""
+    return Rotation.from_quat(rng.normal(size=4)).as_matrix()
+
+
+def rotation_about(axis, angle):
+    """The rotation by `angle` (radians) about `axis` (any length)."""
+    return Rotation.from_rotvec(angle * np.asarray(axis, dtype=float) / np.linalg.norm(axis)).as_matrix()
+
+
+def half_turn(rng):
+    """A half turn about a slanted axis: catches formulas that lose the relative signs of the axis.
+
+    The axis is (0.36, 0.48, 0.8) in some order and with some signs. With it the entries have four decimals and the
+    trace is exactly -1 in whatever order it is summed, so a formula that breaks at a half turn breaks in one way only.
+    """
+    axis = rng.permutation([0.36, 0.48, 0.8]) * rng.choice([-1.0, 1.0], size=3)
+    return 2.0 * np.outer(axis, axis) - np.eye(3)
+
+
+def near_half_turn(rng, short):
+    """A turn about a slanted axis that is `short` (radians) of a half turn."""
+    return rotation_about(slanted_axis(rng), np.pi - short)
+
+
+def wide_turn(rng):
+    """A turn by 125 to 170 degrees about a slanted axis: the trace is negative."""
+    return rotation_about(slanted_axis(rng), np.radians(rng.uniform(125.0, 170.0)))
+
+
+def tilt(rng):
+    """A turn by 20 to 80 degrees about a slanted axis: tilted, and the trace is positive."""
+    return rotation_about(slanted_axis(rng), np.radians(rng.uniform(20.0, 80.0)))
+
+
+def slanted_axis(rng):
+    """A unit vector away from every coordinate axis and plane, of mixed signs."""
+    axis = rng.uniform(0.3, 1.0, size=3) * rng.choice([-1.0, 1.0], size=3)
+    return axis / np.linalg.norm(axis)
+
+
+def vector(rng, length=1.0):
+    """A generic vector: three components, none near zero and no two nearly alike in size."""
+    sizes = rng.permutation([0.3, 0.6, 0.9]) + rng.uniform(-0.1, 0.1, size=3)
+    return length * sizes * rng.choice([-1.0, 1.0], size=3)
+
+
+def transform(R, p):
+    """The 4x4 homogeneous transform of a rotation and a translation."""
+    result = np.eye(4)
+    result[:3, :3], result[:3, 3] = R, p
+    return result
+
+
+def generic_transform(rng):
+    """A tilted frame somewhere: a generic rotation and a translation that is not along its axis."""
+    return transform(rotation(rng), vector(rng))
+
+
+def quaternion(R):
+    """x, y, z, w of a rotation matrix."""
+    return Rotation.from_matrix(R).as_quat()
+
+
+def pose(R, p):
+    """The Pose of a rotation and a translation."""
+    return Pose(Point(*(float(c) for c in p)), Quaternion(*(float(c) for c in quaternion(R))))
+
+
+def matrix(pose):
+    """The 4x4 transform of a Pose; needs a quaternion other than 0, 0, 0, 0."""
+    p, q = pose.position, pose.orientation
+    return transform(Rotation.from_quat([q.x, q.y, q.z, q.w]).as_matrix(), [p.x, p.y, p.z])
+
+
+def generic_pose(rng):
+    """A tilted frame somewhere, as a Pose."""
+    return pose(rotation(rng), vector(rng))
+
+
+def either_sign(poses):
+    """The poses, with the quaternion of every second one negated: q and -q are the same orientation."""
+    for result in poses[1::2]:
+        q = result.orientation
+        result.orientation = Quaternion(-q.x, -q.y, -q.z, -q.w)
+    return poses

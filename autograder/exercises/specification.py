@@ -1,0 +1,105 @@
+"""What an exercise is: a reference solution, a generator of cases, and the ways students get it wrong.
+
+One specification feeds everything: the public key that `check` reads in the notebooks, the hidden cases of the judge,
+the diagnosis in feedback and report, and the tests that prove the grader.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from transform_lab import codec
+from transform_lab.verdict import PARTS, same
+
+PUBLIC_SEED = 24  # the cases students see; any other seed draws hidden ones
+DIGITS = 12  # decimals kept in the key: far below the tolerance of 1e-6
+
+
+@dataclass(frozen=True)
+class Case:
+    """Arguments for one call, and the family of cases it stands for, in words a student understands."""
+
+    family: str  # "a half turn about a slanted axis"
+    args: tuple = ()
+    kwargs: dict = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Misconception:
+    """One way to get an exercise wrong, as code: `wrong` takes the exercise's arguments and answers as that student would."""
+
+    id: str
+    wrong: Callable
+    says: str  # what the answer shows
+    hint: str  # helps without giving the solution away
+
+
+@dataclass(frozen=True)
+class Exercise:
+    """One exercise.
+
+    name: of the student's function, of its test cell, and of the row in every report
+    returns: the kind of answer, a key of transform_lab.verdict.PARTS
+    reference: the right solution
+    cases: from a NumPy random generator to a list of Case; the same families for every seed
+    misconceptions: see Misconception
+    credit: what each part of the answer is worth alone; all parts together are worth 1
+    """
+
+    name: str
+    returns: str
+    reference: Callable
+    cases: Callable[[np.random.Generator], list]
+    misconceptions: tuple = ()
+    credit: dict = field(default_factory=dict)
+
+    def __post_init__(self):
+        unknown = set(self.credit) - set(PARTS[self.returns])
+        if unknown or sum(self.credit.values()) > 1:
+            raise ValueError(f"{self.name}: credit {self.credit} does not fit an answer of kind {self.returns}")
+
+
+def key(exercise, seed):
+    """The exercise with the cases drawn from `seed`, as the plain data that `transform_lab.verdict.examine` takes."""
+    cases = exercise.cases(np.random.default_rng(seed))
+    return {
+        "returns": exercise.returns,
+        "credit": exercise.credit,
+        "misconceptions": [{"id": m.id, "says": m.says, "hint": m.hint} for m in exercise.misconceptions],
+        "cases": [_case(exercise, case) for case in cases],
+    }
+
+
+def _case(exercise, case):
+    args = [_rounded(codec.encode(arg)) for arg in case.args]
+    kwargs = {name: _rounded(codec.encode(arg)) for name, arg in case.kwargs.items()}
+    expected = _answer(exercise.reference, args, kwargs)
+    wrong = [_answer(misconception.wrong, args, kwargs) for misconception in exercise.misconceptions]
+    return {
+        "family": case.family,
+        "args": args,
+        "kwargs": kwargs,
+        "expected": expected,
+        "wrong": [
+            None if answer != {"raises": True} and same(exercise.returns, answer, expected) else answer for answer in wrong
+        ],
+    }
+
+
+def _answer(function, args, kwargs):
+    args, kwargs = [codec.decode(arg) for arg in args], {name: codec.decode(arg) for name, arg in kwargs.items()}
+    with np.errstate(all="ignore"):  # wrong implementations divide by zero; that is their point
+        try:
+            return _rounded(codec.encode(function(*args, **kwargs)))
+        except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError, np.linalg.LinAlgError):
+            return {"raises": True}
+
+
+def _rounded(plain):
+    if isinstance(plain, float):
+        return round(plain, DIGITS) + 0.0
+    if isinstance(plain, list):
+        return [_rounded(item) for item in plain]
+    if isinstance(plain, dict):
+        return {name: _rounded(item) for name, item in plain.items()}
+    return plain

@@ -1,0 +1,77 @@
+"""Frames of JSON over a socket: the length in 4 bytes, then the text. Both ends of the sandbox use it.
+
+The receiving end treats every byte as a lie: a frame has a largest size, reading has a deadline, and an answer counts
+only with the nonce of the request it answers.
+"""
+
+import json
+import select
+import struct
+import time
+
+LENGTH = struct.Struct(">I")
+LARGEST_FRAME = 8_000_000  # bytes
+MOST_FORGED = 100
+
+
+class Closed(Exception):
+    """The other end is gone."""
+
+
+class Late(Exception):
+    """Nothing whole has come before the deadline."""
+
+
+class Garbled(Exception):
+    """What came is no frame, or is too large."""
+
+
+class Channel:
+    """One end of a socket that carries frames."""
+
+    def __init__(self, connection):
+        self.connection, self.buffer = connection, bytearray()
+
+    def send(self, message):
+        """Write one frame; raises Closed when nobody is there to read it."""
+        data = json.dumps(message, separators=(",", ":")).encode()
+        try:
+            self.connection.sendall(LENGTH.pack(len(data)) + data)
+        except OSError as error:
+            raise Closed from error
+
+    def receive(self, deadline=None):
+        """Read one frame, until `deadline` (time.monotonic) at most. What came before a Late is not lost."""
+        self._fill(LENGTH.size, deadline)
+        (length,) = LENGTH.unpack(self.buffer[: LENGTH.size])
+        if length > LARGEST_FRAME:
+            raise Garbled(f"a frame of {length} bytes")
+        self._fill(LENGTH.size + length, deadline)
+        frame = bytes(self.buffer[LENGTH.size : LENGTH.size + length])
+        del self.buffer[: LENGTH.size + length]
+        try:
+            return json.loads(frame)
+        except (ValueError, RecursionError) as error:
+            raise Garbled("not JSON") from error
+
+    def answer_to(self, nonce, deadline):
+        """The first frame that carries `nonce`; forged ones are passed over, a flood of them is Garbled."""
+        for _ in range(MOST_FORGED):
+            message = self.receive(deadline)
+            if isinstance(message, dict) and message.get("nonce") == nonce:
+                return message
+        raise Garbled("a flood of frames that nobody asked for")
+
+    def _fill(self, size, deadline):
+        while len(self.buffer) < size:
+            if deadline is not None:
+                left = deadline - time.monotonic()
+                if left <= 0 or not select.select([self.connection], [], [], left)[0]:
+                    raise Late
+            try:
+                chunk = self.connection.recv(1 << 16)
+            except OSError as error:
+                raise Closed from error
+            if not chunk:
+                raise Closed
+            self.buffer += chunk
