@@ -1,0 +1,476 @@
+"""The exercises of notebook 1: rotation matrices, and the two quaternions of one orientation."""
+
+import math
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from .cases import half_turn, quaternion, rotation, rotation_about, signed_permutations, slanted_axis, tilt, transform
+from .specification import Case, Exercise, Misconception
+
+TOLERANCE = 1e-6
+
+# --- rotation_about_z -----------------------------------------------------------------------------------------------
+
+
+def rotation_about_z(degrees):
+    return Rotation.from_euler("z", degrees, degrees=True).as_matrix()
+
+
+def about_z_cases(rng):
+    families = {
+        "a quarter, half or three-quarter turn": [90, 180, 270.0, -90, 0],
+        "a positive angle below 90 degrees": [30, 45.0, 60, rng.uniform(5, 85)],
+        "a negative angle": [-30, -45.0, -rng.uniform(50, 85), -rng.uniform(95, 175)],
+        "an angle between 90 and 360 degrees": [120, 210.0, rng.uniform(95, 175), rng.uniform(275, 355)],
+        "more than a full turn": [405, -750.0, rng.uniform(370, 440)],
+        "a fraction of a degree": [0.5, -0.25, rng.uniform(0.01, 0.1)],
+    }
+    return [Case(family, (angle,)) for family, angles in families.items() for angle in angles]
+
+
+def _plane(cosine, sine):
+    return np.array([[cosine, -sine], [sine, cosine]])
+
+
+def _z_axis_lost(degrees):
+    R = rotation_about_z(degrees)
+    R[2, 2] = 0.0
+    return R
+
+
+ABOUT_ANOTHER_AXIS = (
+    "Your matrix turns about another axis than z.",
+    "The axis of a rotation stays where it is: which column of your matrix should be the z axis, unchanged?",
+)
+BOTH_SINES_ALIKE = (
+    "Both sines in your matrix have the same sign, so its columns are no longer at right angles.",
+    "Draw B's x axis and y axis, turned by a small angle: which one component of the two axes is negative?",
+)
+NOT_IN_RADIANS = (
+    "The angle was not turned into radians correctly.",
+    "By what do you multiply 180 degrees to get half a turn in radians? Try your conversion on 180 and on 90.",
+)
+
+ABOUT_Z = Exercise(
+    name="rotation_about_z",
+    returns="rotation",
+    reference=rotation_about_z,
+    cases=about_z_cases,
+    misconceptions=(
+        Misconception(
+            "degrees-as-radians",
+            lambda degrees: Rotation.from_euler("z", degrees).as_matrix(),
+            "The angle was taken as radians, but it is given in degrees.",
+            "NumPy's and Python's sine and cosine expect radians.",
+        ),
+        *(
+            Misconception(
+                "wrong-units",
+                lambda degrees, factor=factor: Rotation.from_euler("z", degrees * factor).as_matrix(),
+                *NOT_IN_RADIANS,
+            )
+            for factor in (180 / math.pi, 1 / 180, 2 * math.pi / 180, math.pi / 360, 2 * math.pi)
+        ),
+        Misconception(
+            "rotation-transposed",
+            lambda degrees: rotation_about_z(-degrees),
+            "Your frame turns the other way round: B's axes stand in the rows of your matrix, not in its columns.",
+            "For a small positive angle, where does B's x axis point in A? That is the first column.",
+        ),
+        *(
+            Misconception(
+                "wrong-axis",
+                lambda degrees, axis=axis: Rotation.from_euler(axis, degrees, degrees=True).as_matrix(),
+                *ABOUT_ANOTHER_AXIS,
+            )
+            for axis in "xy"
+        ),
+        *(
+            Misconception("wrong-sign", lambda degrees, s=sign: rotation_about_z(degrees) * s, *BOTH_SINES_ALIKE)
+            for sign in (
+                np.array([[1, -1, 1], [1, 1, 1], [1, 1, 1]]),  # both sines positive
+                np.array([[1, 1, 1], [-1, 1, 1], [1, 1, 1]]),  # both negative
+            )
+        ),
+        Misconception(
+            "wrong-sign",
+            lambda degrees: rotation_about_z(degrees) * np.array([[1, -1, 1], [1, -1, 1], [1, 1, 1]]),
+            "B's y axis points the opposite way: your matrix is a mirror image.",
+            "In a right-handed frame, a quarter turn from x to y goes the same way as a positive angle about z.",
+        ),
+        Misconception(
+            "sine-cosine-swapped",
+            lambda degrees: rotation_about_z(90 - degrees),
+            "Sine and cosine have changed places.",
+            "For an angle of 0 the answer has to be the identity: which of the two is 1 there?",
+        ),
+        Misconception(
+            "third-axis-missing",
+            _z_axis_lost,
+            "The third column of your matrix is empty, but B has a z axis.",
+            "Where does B's z axis point in A while B turns about z?",
+        ),
+        Misconception(
+            "homogeneous-returned",
+            lambda degrees: transform(rotation_about_z(degrees), (0, 0, 0)),
+            "You returned a 4x4 transform; asked for is the rotation alone.",
+            "A rotation matrix has one column for each axis of B, and one row for each axis of A.",
+        ),
+        Misconception(
+            "wrong-shape",
+            lambda degrees: rotation_about_z(degrees)[:2, :2],
+            "You returned a 2x2 matrix: the rotation in the plane is right, the z axis is missing.",
+            "B's z axis needs a column too, and every axis has a z component in A.",
+        ),
+    ),
+)
+
+# --- rotation_from_axes ---------------------------------------------------------------------------------------------
+
+
+def rotation_from_axes(x_axis, y_axis):
+    return np.column_stack((x_axis, y_axis, np.cross(x_axis, y_axis)))
+
+
+def from_axes_cases(rng):
+    families = {
+        "axes of B along axes of A": signed_permutations(),
+        "a frame turned about one axis of A": [
+            rotation_about(axis, sign * rng.uniform(0.3, 1.3)) for axis in np.eye(3) for sign in (1, -1)
+        ],
+        "a tilted frame": [tilt(rng), rotation(rng), rotation(rng), half_turn(rng), rotation(rng)],
+        "a frame turned by a fraction of a degree": [rotation_about(slanted_axis(rng), angle) for angle in (1e-2, 1e-3)],
+    }
+    return [Case(family, (R[:, 0], R[:, 1])) for family, matrices in families.items() for R in matrices]
+
+
+def _axes_with(third):
+    """The frame with its z axis as `third(x_axis, y_axis)` has it."""
+    return lambda x_axis, y_axis: np.column_stack((x_axis, y_axis, third(x_axis, y_axis)))
+
+
+FROM_AXES = Exercise(
+    name="rotation_from_axes",
+    returns="rotation",
+    reference=rotation_from_axes,
+    cases=from_axes_cases,
+    misconceptions=(
+        Misconception(
+            "rotation-transposed",
+            lambda x_axis, y_axis: rotation_from_axes(x_axis, y_axis).T,
+            "B's axes stand in the rows of your matrix.",
+            "The matrix describes B in A: each axis of B, written in A, is one of its columns.",
+        ),
+        Misconception(
+            "left-handed",
+            _axes_with(lambda x, y: np.cross(y, x)),
+            "Your z axis points the opposite way, which makes a left-handed frame.",
+            "Point your right index finger along x and your middle finger along y; the thumb shows z. "
+            "The order of a cross product matters.",
+        ),
+        Misconception(
+            "third-axis-assumed",
+            _axes_with(lambda x, y: (0.0, 0.0, 1.0)),
+            "Your B always has A's z axis, as if B only ever turned about z.",
+            "B can be tilted: its z axis follows from the two axes you are given.",
+        ),
+        Misconception(
+            "third-axis-missing",
+            _axes_with(lambda x, y: (0.0, 0.0, 0.0)),
+            "The third column of your matrix is empty.",
+            "Two axes of a right-handed frame determine the third: which direction is at right angles to both?",
+        ),
+        Misconception(
+            "elementwise-product",
+            _axes_with(lambda x, y: x * y),
+            "Your z axis is the product of x and y component by component.",
+            "`*` multiplies entry by entry. Which product of two vectors is at right angles to both?",
+        ),
+        Misconception(
+            "added-not-multiplied",
+            _axes_with(lambda x, y: x + y),
+            "Your z axis is the sum of x and y, which lies in their plane.",
+            "z stands at right angles to both x and y: which product of two vectors does that?",
+        ),
+        *(
+            Misconception(
+                "axes-swapped",
+                lambda x_axis, y_axis, order=order: rotation_from_axes(x_axis, y_axis)[:, order],
+                "The three axes of B are right, but their columns are in another order.",
+                "Which axis of B is the first column, which the second, which the third?",
+            )
+            for order in ([1, 0, 2], [2, 0, 1], [1, 2, 0], [0, 2, 1], [2, 1, 0])
+        ),
+        Misconception(
+            "homogeneous-returned",
+            lambda x_axis, y_axis: transform(rotation_from_axes(x_axis, y_axis), (0, 0, 0)),
+            "You returned a 4x4 transform; asked for is the rotation alone.",
+            "A rotation matrix has one column for each axis of B, and one row for each axis of A.",
+        ),
+        Misconception(
+            "wrong-shape",
+            lambda x_axis, y_axis: np.column_stack((x_axis, y_axis)),
+            "You returned a 3x2 matrix: x and y are right, the z axis is missing.",
+            "Two axes of a right-handed frame determine the third: which direction is at right angles to both?",
+        ),
+        Misconception(
+            "wrong-shape",
+            lambda x_axis, y_axis: np.concatenate((x_axis, y_axis, np.cross(x_axis, y_axis))),
+            "You returned nine numbers in a row: the axes are right, but they are no matrix yet.",
+            "Look for a NumPy function that puts vectors side by side as columns, and print the answer's `.shape`.",
+        ),
+    ),
+)
+
+# --- is_rotation ----------------------------------------------------------------------------------------------------
+
+
+def _close(one, other, tolerance=TOLERANCE):
+    return bool(np.all(np.abs(np.asarray(one) - np.asarray(other)) <= tolerance))
+
+
+def is_rotation(R):
+    return _close(R.T @ R, np.eye(3)) and np.linalg.det(R) > 0
+
+
+def is_rotation_cases(rng):
+    """Each family sets rotations against matrices that look like them, so that no one answer is right in a family."""
+    along_axes = signed_permutations()
+    mirror_normal = slanted_axis(rng)
+    mirror = np.eye(3) - 2.0 * np.outer(mirror_normal, mirror_normal)
+    shear, stretch = np.eye(3), np.diag([2.0, 0.5, 1.0])
+    shear[0, 1] = 0.5
+    leaning = shear / np.linalg.norm(shear, axis=0)  # unit columns that are not at right angles
+    changed = [rotation(rng), along_axes[rng.integers(24)], half_turn(rng)]
+    for R in changed:
+        R[rng.integers(3), rng.integers(3)] += 1e-3
+    families = {
+        "a rotation, or a mirror image of one": [
+            rotation(rng), np.eye(3), half_turn(rng),
+            rotation(rng) @ np.diag([1.0, 1.0, -1.0]), -np.eye(3), mirror @ rotation(rng),
+        ],
+        "a rotation, or one with two of its columns swapped": [
+            np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]), rotation(rng).T,
+            np.eye(3)[:, [1, 0, 2]], rotation(rng)[:, [0, 2, 1]],
+        ],
+        "a rotation, or axes that are not at right angles": [
+            rotation(rng), tilt(rng), shear, rotation(rng) @ shear, rotation(rng) @ leaning, leaning.T @ rotation(rng),
+        ],
+        "a rotation, or one stretched along one axis and squeezed along another": [
+            rotation(rng), along_axes[rng.integers(24)], stretch, rotation(rng) @ stretch, stretch @ rotation(rng),
+        ],
+        "a rotation, or one made larger or smaller as a whole": [
+            rotation(rng), tilt(rng), 2.0 * rotation(rng), 0.5 * rotation(rng), 1.01 * rotation(rng), np.zeros((3, 3)),
+        ],
+        "a rotation with rounding errors of 1e-9, or one with a number that is off by 0.001": [
+            rotation(rng) + rng.uniform(-1e-9, 1e-9, size=(3, 3)), tilt(rng) + rng.uniform(-1e-9, 1e-9, size=(3, 3)),
+            half_turn(rng) + rng.uniform(-1e-9, 1e-9, size=(3, 3)), *changed,
+        ],
+    }  # fmt: skip
+    return [Case(family, (R,)) for family, matrices in families.items() for R in matrices]
+
+
+def _right_angles_only(R):
+    products = R.T @ R
+    return _close(products, np.diag(np.diag(products))) and np.linalg.det(R) > 0
+
+
+def _unit_columns_only(R):
+    return _close(np.linalg.norm(R, axis=0), 1.0) and np.linalg.det(R) > 0
+
+
+ANSWER_REVERSED = (
+    "Every answer is the opposite of the right one.",
+    "Read the docstring again: when does the function return True?",
+)
+DETERMINANT_ONLY = (
+    "You accept matrices whose determinant is right but whose axes are not.",
+    "A stretch along one axis can be undone by a squeeze along another, and the determinant does not notice. "
+    "What else is true of the columns of a rotation?",
+)
+
+IS_ROTATION = Exercise(
+    name="is_rotation",
+    returns="truth",
+    reference=is_rotation,
+    cases=is_rotation_cases,
+    misconceptions=(
+        *(
+            Misconception("determinant-only", wrong, *DETERMINANT_ONLY)
+            for wrong in (
+                lambda R: _close(np.linalg.det(R), 1.0),
+                lambda R: _close(abs(np.linalg.det(R)), 1.0),
+            )
+        ),
+        Misconception(
+            "reflection-accepted",
+            lambda R: _close(R.T @ R, np.eye(3)),
+            "You accept mirror images: their axes have length 1 and right angles, but make a left-handed frame.",
+            "Which single number of a matrix tells a right-handed frame from a left-handed one?",
+        ),
+        Misconception(
+            "exact-comparison",
+            lambda R: np.array_equal(R.T @ R, np.eye(3)) and np.linalg.det(R) == 1.0,
+            "You reject rotations whose numbers carry tiny rounding errors.",
+            "Numbers that were computed are rarely equal to the last digit: compare with a tolerance.",
+        ),
+        Misconception(
+            "loose-comparison",
+            lambda R: _close(R.T @ R, np.eye(3), 0.01) and np.linalg.det(R) > 0,
+            "You accept matrices that are off by a thousandth.",
+            "Your tolerance is too generous: the docstring says how close is close enough.",
+        ),
+        Misconception(
+            "lengths-ignored",
+            _right_angles_only,
+            "You check that the axes are at right angles, but not that each has length 1.",
+            "Try your function on a rotation multiplied by 2.",
+        ),
+        Misconception(
+            "angles-ignored",
+            _unit_columns_only,
+            "You check that each axis has length 1, but not that the axes are at right angles.",
+            "Try your function on three unit vectors that lean towards each other.",
+        ),
+        Misconception(
+            "elementwise-product",
+            lambda R: _close(R * R.T, np.eye(3)),
+            "Your product of two matrices multiplies entry by entry.",
+            "`*` is not the matrix product in NumPy; the lab says how to multiply matrices.",
+        ),
+        *(
+            Misconception(
+                "invertible-only",
+                wrong,
+                "You accept every matrix that has an inverse.",
+                "Every invertible matrix times its inverse is the identity. What is special about a rotation's inverse?",
+            )
+            for wrong in (
+                lambda R: _close(R @ np.linalg.inv(R), np.eye(3)),  # raises for a singular matrix
+                lambda R: not _close(np.linalg.det(R), 0.0),
+            )
+        ),
+        Misconception("answer-reversed", lambda R: not is_rotation(R), *ANSWER_REVERSED),
+    ),
+)
+
+# --- same_rotation --------------------------------------------------------------------------------------------------
+
+_OPPOSITE = np.array([-1.0, -1.0, -1.0, 1.0])  # times a quaternion: the opposite turn
+
+def same_rotation(q1, q2):
+    return _close(q1, q2) or _close(q1, -q2)
+
+
+def same_rotation_cases(rng):
+    def turn(axis, angle):
+        return quaternion(rotation_about(axis, angle))
+
+    def nearby(q, size):
+        step = rng.normal(size=4)
+        step -= (step @ q) * q  # along the unit sphere, so that the result is a unit quaternion too
+        moved = q + size * step / np.linalg.norm(step)
+        return moved / np.linalg.norm(moved)
+
+    def some():
+        return quaternion(rotation(rng)) * rng.choice([-1.0, 1.0])
+
+    q = [some() for _ in range(12)]
+    axis, other = slanted_axis(rng), slanted_axis(rng)
+    first_half, second_half = (np.append(a, 0.0) for a in (rng.permutation([0.36, 0.48, 0.8]), (0.0, 0.6, -0.8)))
+    mirrored = axis * [1, -1, 1]
+    # "About a degree" is 0.01 in the components and 5e-5 in the dot product: who compares the dot product with 1 in the
+    # way of `np.isclose` (relative tolerance 1e-5) has understood the matter, and is right here.
+    families = {
+        "a quaternion and its negative": [(q[0], -q[0]), (-q[1], q[1]), (q[2], -q[2])],
+        "two half turns (w is 0)": [
+            (first_half, -first_half), (-second_half, second_half), (first_half, second_half), (second_half, second_half),
+        ],
+        "the same quaternion twice, or two unrelated ones": [(q[3], q[3]), (q[4], q[5]), (q[6], -q[7]), (-q[8], q[8])],
+        "a turn and the opposite turn": [(q[9], q[9] * _OPPOSITE), (q[10], -q[10] * _OPPOSITE), (q[10], -q[10])],
+        "two turns by the same angle, or about the same axis": [
+            (turn(axis, 0.9), turn(other, 0.9)), (turn(axis, 0.9), turn(mirrored, 0.9)),
+            (turn(axis, 0.5), -turn(axis, 1.4)), (turn(axis, 1.4), -turn(axis, 1.4)),
+        ],
+        "two quaternions that differ by rounding, or by about a degree": [
+            (q[11], nearby(q[11], 1e-9)), (q[0], -nearby(q[0], 1e-9)),
+            (q[1], nearby(q[1], 0.01)), (q[2], -nearby(q[2], 0.01)),
+        ],
+    }  # fmt: skip
+    return [Case(family, pair) for family, pairs in families.items() for pair in pairs]
+
+
+def _upper_half(q):
+    return q if q[3] >= 0 else -q
+
+
+def _same_axis(q1, q2):
+    return _close(np.cross(q1[:3], q2[:3]), 0.0)
+
+
+OPPOSITE_ACCEPTED = (
+    "You take a turn and the opposite turn for the same orientation.",
+    "Negating x, y and z turns the axis round. What has to happen to w for the orientation to stay the same?",
+)
+
+SAME_ROTATION = Exercise(
+    name="same_rotation",
+    returns="truth",
+    reference=same_rotation,
+    cases=same_rotation_cases,
+    misconceptions=(
+        Misconception(
+            "sign-ignored",
+            _close,
+            "You take q and -q for different orientations.",
+            "Turn q and -q into rotation matrices, and compare the two matrices.",
+        ),
+        Misconception(
+            "exact-comparison",
+            lambda q1, q2: np.array_equal(q1, q2) or np.array_equal(q1, -q2),
+            "You take quaternions for different that differ by rounding only.",
+            "Numbers that were computed are rarely equal to the last digit: compare with a tolerance.",
+        ),
+        Misconception(
+            "loose-comparison",
+            lambda q1, q2: abs(q1 @ q2) > 0.999,
+            "You take orientations for the same that are a degree apart.",
+            "Your tolerance is too generous. Mind that the dot product of unit vectors hardly changes at small angles.",
+        ),
+        Misconception(
+            "component-signs-dropped",
+            lambda q1, q2: _close(np.abs(q1), np.abs(q2)),
+            "You drop the sign of each number by itself, and so take some different orientations for the same.",
+            "Either all four signs differ or none does; what if only some of them do?",
+        ),
+        *(
+            Misconception("rotation-transposed", wrong, *OPPOSITE_ACCEPTED)
+            for wrong in (
+                lambda q1, q2: _close(q1, q2) or _close(q1, q2 * _OPPOSITE),
+                lambda q1, q2: same_rotation(q1, q2) or same_rotation(q1, q2 * _OPPOSITE),
+            )
+        ),
+        Misconception(
+            "angle-only",
+            lambda q1, q2: _close(abs(q1[3]), abs(q2[3])),
+            "You compare the angles only: w says how far a rotation turns, not about what.",
+            "Two turns by 30 degrees about different axes are different orientations.",
+        ),
+        Misconception(
+            "axis-only",
+            _same_axis,
+            "You compare the axes only: x, y and z point along the axis, whatever the angle.",
+            "Turns by 30 and by 80 degrees about one axis are different orientations.",
+        ),
+        Misconception(
+            "half-turn-missed",
+            lambda q1, q2: _close(_upper_half(q1), _upper_half(q2)),
+            "You make w positive first, and that does not decide between q and -q when w is 0.",
+            "What is the sign of w for a half turn? Compare in a way that does not need it.",
+        ),
+        Misconception("answer-reversed", lambda q1, q2: not same_rotation(q1, q2), *ANSWER_REVERSED),
+    ),
+)
+
+EXERCISES = (ABOUT_Z, FROM_AXES, IS_ROTATION, SAME_ROTATION)
