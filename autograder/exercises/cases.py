@@ -86,15 +86,30 @@ def quaternion(R):
     return Rotation.from_matrix(R).as_quat()
 
 
+def pose_of(p, q):
+    """The Pose of a position x, y, z and a quaternion x, y, z, w."""
+    return Pose(Point(*(float(c) for c in p)), Quaternion(*(float(c) for c in q)))
+
+
 def pose(R, p):
     """The Pose of a rotation and a translation."""
-    return Pose(Point(*(float(c) for c in p)), Quaternion(*(float(c) for c in quaternion(R))))
+    return pose_of(p, quaternion(R))
+
+
+def position(pose):
+    """x, y, z of a Pose's position."""
+    return np.array([pose.position.x, pose.position.y, pose.position.z])
+
+
+def orientation(pose):
+    """x, y, z, w of a Pose's orientation."""
+    q = pose.orientation
+    return np.array([q.x, q.y, q.z, q.w])
 
 
 def matrix(pose):
     """The 4x4 transform of a Pose; needs a quaternion other than 0, 0, 0, 0."""
-    p, q = pose.position, pose.orientation
-    return transform(Rotation.from_quat([q.x, q.y, q.z, q.w]).as_matrix(), [p.x, p.y, p.z])
+    return transform(Rotation.from_quat(orientation(pose)).as_matrix(), position(pose))
 
 
 def generic_pose(rng):
@@ -103,8 +118,5 @@ def generic_pose(rng):
 
 
 def either_sign(poses):
-    """The poses, with the quaternion of every second one negated: q and -q are the same orientation."""
-    for result in poses[1::2]:
-        q = result.orientation
-        result.orientation = Quaternion(-q.x, -q.y, -q.z, -q.w)
-    return poses
+    """The poses, every second one with its quaternion negated: q and -q are the same orientation."""
+    return [pose_of(position(p), orientation(p) * (-1) ** index) for index, p in enumerate(poses)]

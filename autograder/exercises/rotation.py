@@ -140,7 +140,9 @@ def from_axes_cases(rng):
             rotation_about(axis, sign * rng.uniform(0.3, 1.3)) for axis in np.eye(3) for sign in (1, -1)
         ],
         "a tilted frame": [tilt(rng), rotation(rng), rotation(rng), half_turn(rng), rotation(rng)],
-        "a frame turned by a fraction of a degree": [rotation_about(slanted_axis(rng), angle) for angle in (1e-2, 1e-3)],
+        "a frame turned by a fraction of a degree": [
+            rotation_about(slanted_axis(rng), angle) for angle in (1e-2, 1e-3)
+        ],
     }
     return [Case(family, (R[:, 0], R[:, 1])) for family, matrices in families.items() for R in matrices]
 
@@ -344,7 +346,7 @@ IS_ROTATION = Exercise(
                 "invertible-only",
                 wrong,
                 "You accept every matrix that has an inverse.",
-                "Every invertible matrix times its inverse is the identity. What is special about a rotation's inverse?",
+                "Any invertible matrix times its inverse is the identity. What is special about a rotation's inverse?",
             )
             for wrong in (
                 lambda R: _close(R @ np.linalg.inv(R), np.eye(3)),  # raises for a singular matrix
@@ -385,7 +387,7 @@ def same_rotation_cases(rng):
     families = {
         "a quaternion and its negative": [(q[0], -q[0]), (-q[1], q[1]), (q[2], -q[2])],
         "two half turns (w is 0)": [
-            (first_half, -first_half), (-second_half, second_half), (first_half, second_half), (second_half, second_half),
+            (first_half, -first_half), (-second_half, second_half), (first_half, second_half),
         ],
         "the same quaternion twice, or two unrelated ones": [(q[3], q[3]), (q[4], q[5]), (q[6], -q[7]), (-q[8], q[8])],
         "a turn and the opposite turn": [(q[9], q[9] * _OPPOSITE), (q[10], -q[10] * _OPPOSITE), (q[10], -q[10])],

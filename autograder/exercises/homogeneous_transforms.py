@@ -1,0 +1,625 @@
+"""The exercises of notebook 2: homogeneous transforms, poses, and points in another frame."""
+
+import math
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from .cases import (
+    either_sign,
+    half_turn,
+    matrix,
+    near_half_turn,
+    orientation,
+    pose,
+    pose_of,
+    position,
+    quaternion,
+    rotation,
+    rotation_about,
+    signed_permutations,
+    slanted_axis,
+    tilt,
+    transform,
+    vector,
+    wide_turn,
+)
+from .specification import Case, Exercise, Misconception
+
+EXAMPLE_1 = transform(rotation_about((0, 0, 1), math.pi / 4), (0, 0, 0.5))  # the lab's: turned by 45 degrees and raised
+
+
+def many_frames(rng):
+    """{family: [(R, p), …]}: rotations of every kind, each with a translation that is not along its axis."""
+    return {
+        "axes of B along axes of A": [(R, vector(rng)) for R in signed_permutations()],
+        "a tilted frame": [(tilt(rng), vector(rng)), (rotation(rng), vector(rng)), (rotation(rng), vector(rng))],
+        "a frame turned by more than 120 degrees": [(wide_turn(rng), vector(rng)) for _ in range(3)],
+        "a half turn about a slanted axis": [(half_turn(rng), vector(rng)) for _ in range(3)],
+        "almost a half turn": [(near_half_turn(rng, short), vector(rng)) for short in (1e-2, 1e-3, 1e-4)],
+        "the lab's Example 1, and turns by a fraction of a degree": [
+            (EXAMPLE_1[:3, :3], EXAMPLE_1[:3, 3]),
+            *((rotation_about(slanted_axis(rng), angle), vector(rng)) for angle in (1e-2, 1e-3)),
+        ],
+        "a frame far away": [(tilt(rng), vector(rng, 50.0)), (wide_turn(rng), vector(rng, 20.0))],
+    }
+
+
+# --- make_transform -------------------------------------------------------------------------------------------------
+
+
+def make_transform(R, p):
+    T = np.eye(4)
+    T[:3, :3] = R
+    T[:3, 3] = p
+    return T
+
+
+def make_transform_cases(rng):
+    families = {
+        "axes of B along axes of A": [(R, vector(rng)) for R in signed_permutations()],
+        "a tilted frame": [(rotation(rng), vector(rng)), (tilt(rng), vector(rng)), (wide_turn(rng), vector(rng))],
+        "a frame turned by a fraction of a degree": [
+            (rotation_about(slanted_axis(rng), angle), vector(rng)) for angle in (1e-2, 1e-3)
+        ],
+        "a frame far away, or less than a centimetre away": [
+            (rotation(rng), vector(rng, 50.0)), (rotation(rng), vector(rng, 0.005)),
+        ],
+    }  # fmt: skip
+    return [Case(family, pair) for family, pairs in families.items() for pair in pairs]
+
+
+def _with_bottom_row(T, row):
+    T = T.copy()
+    T[3] = row
+    return T
+
+
+BOTTOM_ROW = (
+    "The bottom row of your matrix is not that of a homogeneous transform.",
+    "The lab says which four numbers it always holds.",
+)
+TRANSLATION_BELOW = (
+    "The translation stands in the bottom row.",
+    "The translation vector is a column. In which corner of the matrix does the lab put it?",
+)
+ROWS_FOR_COLUMNS = (
+    "The rotation is transposed: B's axes stand in its rows.",
+    "The columns of the rotation matrix are B's axes, written in A.",
+)
+NO_TRANSLATION = (
+    "The rotation is right, but the translation is missing.",
+    "Where is B's origin in A? The transform has to say so.",
+)
+NO_ROTATION = (
+    "The translation is right, but the rotation is the identity.",
+    "B's axes need not be parallel to A's: where does the rotation go?",
+)
+TRANSLATION_TURNED = (
+    "The translation was turned by the rotation: the two are combined in the wrong order.",
+    "The translation is B's origin, already written in A; nothing needs to be done to it.",
+)
+INVERSE_RETURNED = (
+    "Your answer is the inverse: it describes frame A in terms of frame B.",
+    "Read the names again: in a_T_b, frame B is described, and frame A is the one it is described in.",
+)
+TRANSLATION_NEGATED = (
+    "The translation has the opposite sign.",
+    "The translation is where B's origin is in A, seen from A's origin.",
+)
+
+MAKE_TRANSFORM = Exercise(
+    name="make_transform",
+    returns="transform",
+    reference=make_transform,
+    cases=make_transform_cases,
+    credit={"rotation": 0.4, "translation": 0.4},
+    misconceptions=(
+        Misconception("translation-in-bottom-row", lambda R, p: make_transform(R.T, p).T, *TRANSLATION_BELOW),
+        Misconception("rotation-transposed", lambda R, p: make_transform(R.T, p), *ROWS_FOR_COLUMNS),
+        Misconception("position-missing", lambda R, p: make_transform(R, (0, 0, 0)), *NO_TRANSLATION),
+        Misconception("orientation-identity", lambda R, p: make_transform(np.eye(3), p), *NO_ROTATION),
+        *(
+            Misconception(
+                "bottom-row-wrong", lambda R, p, row=row: _with_bottom_row(make_transform(R, p), row), *BOTTOM_ROW
+            )
+            for row in ((0, 0, 0, 0), (1, 1, 1, 1), (1, 0, 0, 0))
+        ),
+        Misconception("order-reversed", lambda R, p: make_transform(R, R @ p), *TRANSLATION_TURNED),
+        Misconception("wrong-direction", lambda R, p: np.linalg.inv(make_transform(R, p)), *INVERSE_RETURNED),
+        Misconception("wrong-sign", lambda R, p: make_transform(R, -p), *TRANSLATION_NEGATED),
+        Misconception(
+            "wrong-shape",
+            lambda R, p: make_transform(R, p)[:3],
+            "You returned a 3x4 matrix: rotation and translation are right, the bottom row is missing.",
+            "A homogeneous transform has four rows; the lab says which four numbers the last one always holds.",
+        ),
+        Misconception(
+            "wrong-shape",
+            lambda R, p: R,
+            "You returned the 3x3 rotation alone.",
+            "A homogeneous transform has four rows and four columns, and a place for the translation.",
+        ),
+    ),
+)
+
+# --- hand_transform -------------------------------------------------------------------------------------------------
+
+
+def hand_transform():
+    return np.array(
+        [
+            [1.0, 0.0, 0.0, -0.1],
+            [0.0, 0.0, 1.0, 0.0],
+            [0.0, -1.0, 0.0, 0.0],
+            [0.0, 0.0, 0.0, 1.0],
+        ]
+    )
+
+
+def _hand(R=None, p=(-0.1, 0, 0)):
+    """The answer of someone who has another rotation, or another translation, and the rest right."""
+    return lambda: transform(hand_transform()[:3, :3] if R is None else R, p)
+
+
+def _columns(x, y, z):
+    return np.column_stack((x, y, z)).astype(float)
+
+
+WRONG_LENGTH = (
+    "The hand moved in the right direction, but not by the right distance.",
+    "The lab says centimetres; lengths in a transform are metres.",
+)
+MOVED_ELSEWHERE = (
+    "The hand moved along another axis than the one that points away from you.",
+    "Which finger points forward in the first pose, and which axis is it? Closer to you is along that axis.",
+)
+ROLLED_ABOUT_ANOTHER_AXIS = (
+    "The hand turned about another axis than the index finger.",
+    "Rolling leaves the index finger where it is: which column of the rotation must not change?",
+)
+LEFT_HANDED = (
+    "One axis of your frame points the opposite way, which makes a left-handed frame.",
+    "Hold up your right hand again: once two fingers are placed, the third has no choice.",
+)
+
+HAND_TRANSFORM = Exercise(
+    name="hand_transform",
+    returns="transform",
+    reference=hand_transform,
+    cases=lambda rng: [Case("your hand, rolled to the left and moved closer")],
+    credit={"rotation": 0.4, "translation": 0.4},
+    misconceptions=(
+        Misconception(
+            "rotation-transposed",
+            _hand(hand_transform()[:3, :3].T),
+            "Your hand is rolled the other way; the rotation is transposed.",
+            "Where does your thumb point after the roll? Its direction in the first pose is a column, not a row.",
+        ),
+        *(
+            Misconception("wrong-units", _hand(p=(length, 0, 0)), *WRONG_LENGTH) for length in (-10, -0.01, -1, -100)
+        ),
+        Misconception(
+            "wrong-sign",
+            _hand(p=(0.1, 0, 0)),
+            "The hand moved away from you instead of closer.",
+            "The index finger points forward, along +x. Which sign does a move towards you have?",
+        ),
+        *(
+            Misconception("wrong-axis", _hand(p=p), *MOVED_ELSEWHERE)
+            for p in ((0, -0.1, 0), (0, 0, -0.1), (0, 0.1, 0), (0, 0, 0.1))
+        ),
+        *(
+            Misconception("wrong-axis", _hand(rotation_about(axis, angle).round()), *ROLLED_ABOUT_ANOTHER_AXIS)
+            for axis in ((0, 1, 0), (0, 0, 1))
+            for angle in (math.pi / 2, -math.pi / 2)
+        ),
+        Misconception("position-missing", _hand(p=(0, 0, 0)), *NO_TRANSLATION),
+        Misconception("orientation-identity", _hand(np.eye(3)), *NO_ROTATION),
+        *(
+            Misconception("left-handed", _hand(_columns(x, y, z)), *LEFT_HANDED)
+            for x, y, z in (
+                ((1, 0, 0), (0, 0, 1), (0, 1, 0)),
+                ((1, 0, 0), (0, 0, -1), (0, -1, 0)),
+                ((-1, 0, 0), (0, 0, -1), (0, 1, 0)),
+            )
+        ),
+        Misconception(
+            "degrees-as-radians",
+            _hand(Rotation.from_euler("x", -90).as_matrix()),
+            "A quarter turn was taken as 90 radians.",
+            "NumPy's and Python's sine and cosine expect radians; and a quarter turn needs neither.",
+        ),
+        Misconception(
+            "translation-in-bottom-row",
+            lambda: _with_bottom_row(_hand(p=(0, 0, 0))(), (-0.1, 0, 0, 1)),
+            *TRANSLATION_BELOW,
+        ),
+        Misconception("bottom-row-wrong", lambda: _with_bottom_row(hand_transform(), (0, 0, 0, 0)), *BOTTOM_ROW),
+        Misconception(
+            "wrong-direction",
+            lambda: np.linalg.inv(hand_transform()),
+            "Your answer is the inverse: the first pose in terms of the new one.",
+            "The new pose is frame B, the one described; the first pose is frame A, the one it is described in.",
+        ),
+    ),
+)
+
+# --- transform_to_pose ----------------------------------------------------------------------------------------------
+
+
+def transform_to_pose(matrix):
+    return pose(matrix[:3, :3], matrix[:3, 3])
+
+
+def transform_to_pose_cases(rng):
+    return [Case(family, (transform(R, p),)) for family, frames in many_frames(rng).items() for R, p in frames]
+
+
+def _to_pose_with(position=None, orientation=None):
+    """`transform_to_pose` of someone who computes the position, or the quaternion, in another way."""
+
+    def wrong(matrix):
+        p = matrix[:3, 3] if position is None else position(matrix)
+        q = quaternion(matrix[:3, :3]) if orientation is None else orientation(matrix)
+        return pose_of(p, q)
+
+    return wrong
+
+
+def _off_diagonal(R):
+    """Twice the sine of the angle times the axis; zero for a half turn."""
+    return np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
+
+
+def _trace_formula(matrix):
+    w = np.sqrt(1.0 + np.trace(matrix[:3, :3])) / 2.0
+    return np.append(_off_diagonal(matrix) / (4.0 * w), w)
+
+
+def _trace_formula_in_plain_python(matrix):
+    w = math.sqrt(1.0 + float(np.trace(matrix[:3, :3]))) / 2.0
+    return [float(difference) / (4.0 * w) for difference in _off_diagonal(matrix)] + [w]  # raises at a half turn
+
+
+def _trace_formula_guarded(matrix):
+    return _trace_formula(matrix) if np.trace(matrix[:3, :3]) > -1.0 + 1e-9 else np.array([0.0, 0.0, 0.0, 1.0])
+
+
+def _lengths_with_signs(signs):
+    """The components' sizes from the diagonal, and the signs of x, y, z from `signs(sizes, differences)`."""
+
+    def wrong(matrix):
+        a, b, c = np.diag(matrix)[:3]
+        squares = np.array([1 + a - b - c, 1 - a + b - c, 1 - a - b + c, 1 + a + b + c])
+        sizes = np.sqrt(np.maximum(squares, 0.0)) / 2.0
+        return np.append(signs(sizes[:3], _off_diagonal(matrix)), sizes[3])
+
+    return wrong
+
+
+def _axis_and_angle(matrix):
+    """The axis from the differences off the diagonal; 0/0 without a rotation, a zero vector at a half turn."""
+    angle = np.arccos(np.clip((np.trace(matrix[:3, :3]) - 1.0) / 2.0, -1.0, 1.0))
+    axis = _off_diagonal(matrix) / (2.0 * np.sin(angle))
+    return np.append(axis * np.sin(angle / 2.0), np.cos(angle / 2.0))
+
+
+def _angle_not_halved(matrix):
+    rotation_vector = Rotation.from_matrix(matrix[:3, :3]).as_rotvec()
+    angle = np.linalg.norm(rotation_vector)
+    axis = rotation_vector / angle if angle > 0 else rotation_vector
+    return np.append(axis * np.sin(angle), np.cos(angle))
+
+
+def _roll_pitch_yaw(matrix):
+    return Rotation.from_matrix(matrix[:3, :3]).as_euler("xyz", suppress_warnings=True)
+
+
+def _yaw_alone(matrix):
+    return Rotation.from_euler("z", math.atan2(matrix[1, 0], matrix[0, 0])).as_quat()
+
+
+QUATERNION_ORDER = (
+    "The four numbers of the quaternion are in another order than ROS's.",
+    "Which comes first in `tf.transformations`, and which last: is w at the front or at the end?",
+)
+QUATERNION_TURNED = (
+    "The orientation is the opposite turn: the rotation was transposed, or the quaternion conjugated.",
+    "Check it with the lab's Example 1: for a turn by +45 degrees about z, which sign has z when w is positive?",
+)
+BREAKS_AT_HALF_TURN = (
+    "The quaternion goes wrong at or near a half turn.",
+    "Your formula divides by w, or takes signs from differences, and both vanish at a half turn. "
+    "A library function knows those cases.",
+)
+NO_ORIENTATION = (
+    "The position is right, but the orientation was never set: it is 0, 0, 0, 0, which is no orientation at all.",
+    "A fresh Quaternion() holds four zeros; where does the rotation of the frame go?",
+)
+ORIENTATION_IDENTITY = (
+    "The position is right, but the orientation is 0, 0, 0, 1, which means no rotation.",
+    "B's axes need not be parallel to A's: where does the rotation of the frame go?",
+)
+ANGLES_AS_QUATERNION = (
+    "The orientation's x, y and z hold roll, pitch and yaw.",
+    "A quaternion's components are not angles; look for a function that makes one from a matrix.",
+)
+POSITION_LEFT_OUT = (
+    "The orientation is right, but the position is 0, 0, 0.",
+    "Where in the matrix does the lab put the translation? Look at the row and the column you read it from.",
+)
+YAW_ALONE = (
+    "Your orientation turns about z only; roll and pitch are lost.",
+    "Frames can be tilted. Use the whole rotation, not an angle of it.",
+)
+WRONG_POSITION = (
+    "The orientation is right, but the position is not B's origin in A.",
+    "Check each component by itself: which row and which column of the matrix should it come from?",
+)
+
+TRANSFORM_TO_POSE = Exercise(
+    name="transform_to_pose",
+    returns="pose",
+    reference=transform_to_pose,
+    cases=transform_to_pose_cases,
+    credit={"position": 0.5, "orientation": 0.5},
+    misconceptions=(
+        *(
+            Misconception(
+                "quaternion-order",
+                _to_pose_with(orientation=lambda matrix, order=order: quaternion(matrix[:3, :3])[order]),
+                *QUATERNION_ORDER,
+            )
+            for order in ([3, 0, 1, 2], [3, 2, 1, 0])
+        ),
+        Misconception(
+            "rotation-transposed",
+            _to_pose_with(orientation=lambda matrix: quaternion(matrix[:3, :3].T)),
+            *QUATERNION_TURNED,
+        ),
+        *(
+            Misconception("trace-formula-only", _to_pose_with(orientation=orientation), *BREAKS_AT_HALF_TURN)
+            for orientation in (
+                _trace_formula,
+                _trace_formula_in_plain_python,
+                _trace_formula_guarded,
+                _lengths_with_signs(np.copysign),
+                _lengths_with_signs(lambda sizes, differences: sizes * np.sign(differences)),
+                _axis_and_angle,
+            )
+        ),
+        Misconception("position-missing", _to_pose_with(position=lambda matrix: (0, 0, 0)), *POSITION_LEFT_OUT),
+        Misconception("orientation-missing", _to_pose_with(orientation=lambda matrix: (0, 0, 0, 0)), *NO_ORIENTATION),
+        Misconception(
+            "orientation-identity", _to_pose_with(orientation=lambda matrix: (0, 0, 0, 1)), *ORIENTATION_IDENTITY
+        ),
+        *(
+            Misconception("wrong-position", _to_pose_with(position=position), *WRONG_POSITION)
+            for position in (
+                lambda matrix: matrix[:3, 3] + matrix[:3, 0],  # the tip of the x axis
+                lambda matrix: (0, 0, matrix[2, 3]),  # z alone
+                lambda matrix: matrix[[0, 1, 0], 3],  # x, y, x
+                lambda matrix: matrix[[2, 1, 0], 3],  # back to front
+                lambda matrix: matrix[:3, 2],  # the column beside it
+                lambda matrix: matrix[:3, :3] @ matrix[:3, 3],
+            )
+        ),
+        Misconception("wrong-direction", lambda matrix: transform_to_pose(np.linalg.inv(matrix)), *INVERSE_RETURNED),
+        *(
+            Misconception(
+                "euler-as-quaternion",
+                _to_pose_with(orientation=lambda matrix, w=w: np.append(_roll_pitch_yaw(matrix), w)),
+                *ANGLES_AS_QUATERNION,
+            )
+            for w in (0.0, 1.0)
+        ),
+        Misconception("yaw-only", _to_pose_with(orientation=_yaw_alone), *YAW_ALONE),
+        Misconception(
+            "angle-not-halved",
+            _to_pose_with(orientation=_angle_not_halved),
+            "The quaternion turns by twice the angle.",
+            "A quaternion is made of sine and cosine of an angle: is it the whole angle of the rotation?",
+        ),
+    ),
+)
+
+# --- pose_to_transform ----------------------------------------------------------------------------------------------
+
+
+def pose_to_transform(pose):
+    return matrix(pose)
+
+
+def pose_to_transform_cases(rng):
+    return [
+        Case(family, (frame,))
+        for family, frames in many_frames(rng).items()
+        for frame in either_sign([pose(R, p) for R, p in frames])
+    ]
+
+
+def _from_pose_with(rotation):
+    """`pose_to_transform` of someone who makes the rotation in another way, from x, y, z, w."""
+    return lambda pose: make_transform(rotation(orientation(pose)), position(pose))
+
+
+def _planar(q):
+    return Rotation.from_euler("z", 2.0 * math.atan2(q[2], q[3])).as_matrix()
+
+
+POSE_TO_TRANSFORM = Exercise(
+    name="pose_to_transform",
+    returns="transform",
+    reference=pose_to_transform,
+    cases=pose_to_transform_cases,
+    credit={"rotation": 0.4, "translation": 0.4},
+    misconceptions=(
+        *(
+            Misconception(
+                "quaternion-order",
+                _from_pose_with(lambda q, order=order: Rotation.from_quat(q[order]).as_matrix()),
+                *QUATERNION_ORDER,
+            )
+            for order in ([3, 0, 1, 2], [1, 2, 3, 0], [3, 2, 1, 0])
+        ),
+        Misconception(
+            "rotation-transposed",
+            _from_pose_with(lambda q: Rotation.from_quat(q).as_matrix().T),
+            "The rotation is the opposite turn: it is transposed, or made from the conjugate quaternion.",
+            "Check it with a turn by +90 degrees about z: where does B's x axis, the first column, point in A?",
+        ),
+        Misconception(
+            "position-missing",
+            lambda pose: make_transform(pose_to_transform(pose)[:3, :3], (0, 0, 0)),
+            "The rotation is right, but the translation is missing.",
+            "The pose also says where B's origin is in A: where does that go in the matrix?",
+        ),
+        Misconception("orientation-identity", _from_pose_with(lambda q: np.eye(3)), *NO_ROTATION),
+        Misconception(
+            "translation-in-bottom-row",
+            lambda pose: make_transform(pose_to_transform(pose)[:3, :3].T, position(pose)).T,
+            *TRANSLATION_BELOW,
+        ),
+        *(
+            Misconception(
+                "bottom-row-wrong", lambda pose, row=row: _with_bottom_row(pose_to_transform(pose), row), *BOTTOM_ROW
+            )
+            for row in ((0, 0, 0, 0), (1, 1, 1, 1))
+        ),
+        Misconception(
+            "order-reversed",
+            lambda pose: pose_to_transform(pose) @ np.linalg.inv(_from_pose_with(lambda q: np.eye(3))(pose)),
+            *TRANSLATION_TURNED,
+        ),
+        Misconception("wrong-direction", lambda pose: np.linalg.inv(pose_to_transform(pose)), *INVERSE_RETURNED),
+        Misconception(
+            "wrong-sign",
+            lambda pose: make_transform(pose_to_transform(pose)[:3, :3], -position(pose)),
+            *TRANSLATION_NEGATED,
+        ),
+        Misconception(
+            "euler-as-quaternion",
+            _from_pose_with(lambda q: Rotation.from_euler("xyz", q[:3]).as_matrix()),
+            "The quaternion's x, y and z were taken for roll, pitch and yaw.",
+            "A quaternion's components are not angles; look for a function that makes a matrix from a quaternion.",
+        ),
+        Misconception("yaw-only", _from_pose_with(_planar), *YAW_ALONE),
+        Misconception(
+            "sign-ignored",
+            _from_pose_with(lambda q: Rotation.from_quat([*q[:3], abs(q[3])]).as_matrix()),
+            "The rotation goes wrong when w is negative.",
+            "Changing the sign of w alone gives another orientation; what happens if all four signs change?",
+        ),
+    ),
+)
+
+# --- transform_point ------------------------------------------------------------------------------------------------
+
+
+def transform_point(a_T_b, p_in_b):
+    return a_T_b[:3, :3] @ p_in_b + a_T_b[:3, 3]
+
+
+def transform_point_cases(rng):
+    x_axis, y_axis, z_axis = np.eye(3)
+    families = {
+        "axes of B along axes of A": [(transform(R, vector(rng)), vector(rng)) for R in signed_permutations()],
+        "a tilted frame": [
+            (transform(R, vector(rng)), vector(rng)) for R in (tilt(rng), wide_turn(rng), half_turn(rng))
+        ],
+        "the lab's Example 1, and the tips of B's other axes": [
+            (EXAMPLE_1, x_axis),
+            (transform(rotation(rng), vector(rng)), y_axis),
+            (transform(tilt(rng), vector(rng)), z_axis),
+        ],
+        "a point near B's origin, or in it, and a frame far away": [
+            (transform(tilt(rng), vector(rng, 50.0)), np.zeros(3)),
+            (transform(wide_turn(rng), vector(rng, 50.0)), vector(rng, 0.01)),
+        ],
+        "a point far away": [(transform(tilt(rng), vector(rng)), vector(rng, 50.0)) for _ in range(2)],
+    }  # fmt: skip
+    return [Case(family, pair) for family, pairs in families.items() for pair in pairs]
+
+
+def _homogeneous(p):
+    return np.append(p, 1.0)
+
+
+ENTRY_BY_ENTRY = (
+    "Your product multiplies entry by entry.",
+    "`*` is not the matrix product in NumPy; the lab says how to multiply matrices.",
+)
+IN_THE_WRONG_ORDER = (
+    "Rotation and translation were applied in the wrong order, or from the wrong side.",
+    "A matrix stands to the left of the point it transforms; and which of the two acts on the point first?",
+)
+
+TRANSFORM_POINT = Exercise(
+    name="transform_point",
+    returns="coordinates",
+    reference=transform_point,
+    cases=transform_point_cases,
+    misconceptions=(
+        Misconception(
+            "rotation-transposed",
+            lambda a_T_b, p_in_b: a_T_b[:3, :3].T @ p_in_b + a_T_b[:3, 3],
+            "The point was turned the opposite way: the rotation is transposed.",
+            "Check it with the tip of B's x axis: where is it in A, according to the first column?",
+        ),
+        Misconception(
+            "translation-dropped",
+            lambda a_T_b, p_in_b: a_T_b[:3, :3] @ p_in_b,
+            "The point was turned, but not moved: the translation has dropped out.",
+            "The lab adds a fourth number to the point. Which one lets the translation in?",
+        ),
+        Misconception(
+            "offset-not-rotated",
+            lambda a_T_b, p_in_b: p_in_b + a_T_b[:3, 3],
+            "The translation was added to the point's coordinates in B, as if B's axes were parallel to A's.",
+            "The coordinates count along B's axes: how do these lie in A?",
+        ),
+        Misconception(
+            "wrong-direction",
+            lambda a_T_b, p_in_b: transform_point(np.linalg.inv(a_T_b), p_in_b),
+            "You took the point from A to B; asked for is from B to A.",
+            "Which frame are the given coordinates in, and which frame does a_T_b lead to?",
+        ),
+        Misconception(
+            "homogeneous-returned",
+            lambda a_T_b, p_in_b: a_T_b @ _homogeneous(p_in_b),
+            "The three coordinates are right, but a fourth number is still there.",
+            "The 1 at the end was needed for the multiplication only.",
+        ),
+        *(
+            Misconception("elementwise-product", wrong, *ENTRY_BY_ENTRY)
+            for wrong in (
+                lambda a_T_b, p_in_b: a_T_b * _homogeneous(p_in_b),
+                lambda a_T_b, p_in_b: (a_T_b * _homogeneous(p_in_b))[:3],
+                lambda a_T_b, p_in_b: a_T_b[:3, :3] * p_in_b + a_T_b[:3, 3],
+                lambda a_T_b, p_in_b: np.diag(a_T_b)[:3] * p_in_b + a_T_b[:3, 3],
+            )
+        ),
+        *(
+            Misconception("order-reversed", wrong, *IN_THE_WRONG_ORDER)
+            for wrong in (
+                lambda a_T_b, p_in_b: (_homogeneous(p_in_b) @ a_T_b)[:3],
+                lambda a_T_b, p_in_b: a_T_b[:3, :3] @ (p_in_b + a_T_b[:3, 3]),
+            )
+        ),
+        Misconception(
+            "wrong-sign",
+            lambda a_T_b, p_in_b: a_T_b[:3, :3] @ p_in_b - a_T_b[:3, 3],
+            "The point was turned as it should, and then moved the opposite way.",
+            "Where does B's own origin, the point 0, 0, 0, have to come out?",
+        ),
+        Misconception(
+            "rest-ignored",
+            lambda a_T_b, p_in_b: a_T_b[:3, 3],
+            "You returned B's origin in A, wherever the point is.",
+            "The answer has to depend on the point too: start at B's origin and go along B's axes.",
+        ),
+    ),
+)
+
+EXERCISES = (MAKE_TRANSFORM, HAND_TRANSFORM, TRANSFORM_TO_POSE, POSE_TO_TRANSFORM, TRANSFORM_POINT)
