@@ -75,4 +75,4 @@ def rigid_transform(matrix, what):
 
 def row_text(values):
     """Return numbers as text, "0, 0, 0.5, 1"."""
-    return ", ".join(f"{value:.4g}" for value in values)
+    return ", ".join(f"{round(float(value), 6) + 0.0:.4g}" for value in values)  # + 0.0 turns -0 into 0
