@@ -1,0 +1,291 @@
+"""The exercises of notebook 3: chains of transforms, and a pose in another frame."""
+
+from functools import reduce
+
+import numpy as np
+
+from .cases import (
+    either_sign,
+    generic_pose,
+    generic_transform,
+    half_turn,
+    matrix,
+    near_half_turn,
+    orientation,
+    pose,
+    pose_of,
+    position,
+    quaternion,
+    rotation,
+    signed_permutations,
+    tilt,
+    transform,
+    vector,
+    wide_turn,
+)
+from .homogeneous_transforms import ENTRY_BY_ENTRY, NO_ORIENTATION, QUATERNION_ORDER
+from .specification import Case, Exercise, Misconception
+
+# --- chain ----------------------------------------------------------------------------------------------------------
+
+
+def chain(*transforms):
+    return reduce(np.matmul, transforms)
+
+
+def chain_cases(rng):
+    def some(number):
+        return tuple(generic_transform(rng) for _ in range(number))
+
+    along_axes = [transform(R, vector(rng)) for R in signed_permutations()]
+    shuffled = [along_axes[index] for index in rng.permutation(24)]
+    families = {
+        "one or two transforms": [some(2), some(1), some(2), some(1)],
+        "two frames with axes along each other's axes": list(zip(shuffled[:12], shuffled[12:])),
+        "three transforms": [some(3), some(3), some(3)],
+        "four to six transforms": [some(4), some(5), some(6)],
+        "frames far away and close by": [
+            (transform(tilt(rng), vector(rng, 50.0)), transform(half_turn(rng), vector(rng, 0.01))),
+            (transform(wide_turn(rng), vector(rng, 0.01)), transform(tilt(rng), vector(rng, 50.0)), *some(1)),
+        ],
+    }
+    return [Case(family, args) for family, lists in families.items() for args in lists]
+
+
+def _rotations_and_translations_apart(*transforms):
+    return transform(chain(*(T[:3, :3] for T in transforms)), sum(T[:3, 3] for T in transforms))
+
+
+SOME_LEFT_OUT = (
+    "Some of the transforms did not get into the product.",
+    "Try your function on one, on two, and on five transforms, and count how many it multiplies.",
+)
+
+CHAIN = Exercise(
+    name="chain",
+    returns="transform",
+    reference=chain,
+    cases=chain_cases,
+    credit={"rotation": 0.4, "translation": 0.4},
+    misconceptions=(
+        Misconception(
+            "order-reversed",
+            lambda *transforms: chain(*reversed(transforms)),
+            "The transforms were multiplied in the reverse order.",
+            "Write the frames' names under the product: next to each other, the same frame has to stand twice.",
+        ),
+        Misconception("elementwise-product", lambda *transforms: reduce(np.multiply, transforms), *ENTRY_BY_ENTRY),
+        Misconception(
+            "offset-not-rotated",
+            _rotations_and_translations_apart,
+            "The rotations were multiplied and the translations added, each by themselves.",
+            "Each translation counts along the axes of its own frame: the transforms before have turned these.",
+        ),
+        *(
+            Misconception("transforms-left-out", wrong, *SOME_LEFT_OUT)
+            for wrong in (
+                lambda *transforms: chain(*transforms[:2]),
+                lambda *transforms: chain(*transforms[-2:]),
+                lambda *transforms: chain(transforms[0], transforms[-1]) if len(transforms) > 1 else transforms[0],
+                lambda *transforms: chain(np.eye(4), *transforms[1:]),
+                lambda *transforms: chain(np.eye(4), *transforms[:-1]),
+                lambda *transforms: transforms[0],
+                lambda *transforms: transforms[-1],
+            )
+        ),
+        Misconception(
+            "too-few-arguments",
+            lambda first, second: first @ second,
+            "Your function takes exactly two transforms.",
+            "A chain can have any number of links: what does the star in the function's first line do?",
+        ),
+        Misconception(
+            "first-applied-twice",
+            lambda *transforms: chain(transforms[0], *transforms),
+            "The first transform is in the product twice.",
+            "What does your product start with, and which transform does your loop multiply first?",
+        ),
+        Misconception(
+            "added-not-multiplied",
+            lambda *transforms: sum(transforms),
+            "The matrices were added.",
+            "Which operation takes a point through one transform and then through the next?",
+        ),
+        Misconception(
+            "wrong-direction",
+            lambda *transforms: np.linalg.inv(chain(*transforms)),
+            "Your answer is the inverse: it describes the first frame in terms of the last.",
+            "Read the names again: which frame is described, and which one is it described in?",
+        ),
+    ),
+)
+
+# --- transform_pose -------------------------------------------------------------------------------------------------
+
+
+def transform_pose(a_T_b, pose_in_b):
+    T = a_T_b @ matrix(pose_in_b)
+    return pose(T[:3, :3], T[:3, 3])
+
+
+def transform_pose_cases(rng):
+    along_axes = signed_permutations()
+    shuffled = [along_axes[index] for index in rng.permutation(24)]
+    first, second = rotation(rng), rotation(rng)
+    families = {
+        "axes along each other's axes": [
+            (transform(R, vector(rng)), pose(S, vector(rng))) for R, S in zip(shuffled[:12], shuffled[12:])
+        ],
+        "tilted frames": [(generic_transform(rng), generic_pose(rng)) for _ in range(4)],
+        "frames turned by more than 120 degrees": [
+            (transform(R, vector(rng)), pose(S, vector(rng)))
+            for R, S in ((wide_turn(rng), wide_turn(rng)), (half_turn(rng), tilt(rng)), (tilt(rng), half_turn(rng)))
+        ],
+        "almost a half turn in all": [
+            (transform(R, vector(rng)), pose(R.T @ near_half_turn(rng, short), vector(rng)))
+            for R, short in ((first, 1e-2), (second, 1e-3))
+        ],
+        "frames far away and close by": [
+            (transform(tilt(rng), vector(rng, 50.0)), pose(wide_turn(rng), vector(rng, 0.01))),
+            (transform(tilt(rng), vector(rng, 0.01)), pose(tilt(rng), vector(rng, 50.0))),
+        ],
+    }
+    return [
+        Case(family, (T, pose_in_b))
+        for family, pairs in families.items()
+        for T, pose_in_b in zip([T for T, _ in pairs], either_sign([pose_in_b for _, pose_in_b in pairs]))
+    ]
+
+
+def _with_position(of):
+    """`transform_pose` of someone whose orientation is right and whose position is `of(a_T_b, position in B)`."""
+    return lambda a_T_b, pose_in_b: pose_of(
+        of(a_T_b, position(pose_in_b)), orientation(transform_pose(a_T_b, pose_in_b))
+    )
+
+
+def _with_orientation(of):
+    """`transform_pose` of someone whose position is right and whose quaternion is `of(a_T_b, pose_in_b)`."""
+    return lambda a_T_b, pose_in_b: pose_of(position(transform_pose(a_T_b, pose_in_b)), of(a_T_b, pose_in_b))
+
+
+def _as_pose(T):
+    return pose(T[:3, :3], T[:3, 3])
+
+
+def _read_in_another_order(a_T_b, pose_in_b, order):
+    return orientation(transform_pose(a_T_b, pose_of(position(pose_in_b), orientation(pose_in_b)[order])))
+
+
+THE_WRONG_WAY_ROUND = (
+    "The two transforms were multiplied in the wrong order.",
+    "Write the frames' names under the product: next to each other, the same frame has to stand twice.",
+)
+
+TRANSFORM_POSE = Exercise(
+    name="transform_pose",
+    returns="pose",
+    reference=transform_pose,
+    cases=transform_pose_cases,
+    credit={"position": 0.5, "orientation": 0.5},
+    misconceptions=(
+        Misconception(
+            "orientation-not-transformed",
+            _with_orientation(lambda a_T_b, pose_in_b: orientation(pose_in_b)),
+            "The position is right, but the orientation is still the one in B.",
+            "If B is tilted in A, can the pose have the same quaternion in both frames?",
+        ),
+        Misconception(
+            "position-not-transformed",
+            _with_position(lambda a_T_b, p_in_b: p_in_b),
+            "The orientation is right, but the position is still the one in B.",
+            "If B's origin is elsewhere in A, can the pose have the same coordinates in both frames?",
+        ),
+        Misconception(
+            "offset-not-rotated",
+            _with_position(lambda a_T_b, p_in_b: p_in_b + a_T_b[:3, 3]),
+            "The two translations were added, as if B's axes were parallel to A's.",
+            "The position counts along B's axes: how do these lie in A?",
+        ),
+        Misconception(
+            "translation-dropped",
+            _with_position(lambda a_T_b, p_in_b: a_T_b[:3, :3] @ p_in_b),
+            "The position was turned, but not moved: B's own translation has dropped out.",
+            "Where in A does a pose come out that lies in B's origin?",
+        ),
+        Misconception(
+            "position-missing",
+            _with_position(lambda a_T_b, p_in_b: (0, 0, 0)),
+            "The orientation is right, but the position is 0, 0, 0.",
+            "The message has two fields; the transform of the result has a translation.",
+        ),
+        Misconception(
+            "wrong-position",
+            _with_position(lambda a_T_b, p_in_b: a_T_b[:3, 3]),
+            "The orientation is right, but the position is that of B's origin.",
+            "The pose lies elsewhere in B: its own position has to be in the answer too.",
+        ),
+        Misconception(
+            "order-reversed",
+            lambda a_T_b, pose_in_b: _as_pose(matrix(pose_in_b) @ a_T_b),
+            *THE_WRONG_WAY_ROUND,
+        ),
+        Misconception(
+            "order-reversed",
+            _with_orientation(lambda a_T_b, pose_in_b: quaternion(matrix(pose_in_b)[:3, :3] @ a_T_b[:3, :3])),
+            "The position is right, but the two rotations were multiplied in the wrong order.",
+            "A product of quaternions has an order too, and it is that of the matrices.",
+        ),
+        Misconception(
+            "wrong-direction",
+            lambda a_T_b, pose_in_b: _as_pose(np.linalg.inv(a_T_b) @ matrix(pose_in_b)),
+            "You took the pose from A to B; asked for is from B to A.",
+            "Which frame is the given pose in, and which frame does a_T_b lead to?",
+        ),
+        Misconception(
+            "wrong-direction",
+            lambda a_T_b, pose_in_b: _as_pose(np.linalg.inv(a_T_b @ matrix(pose_in_b))),
+            "Your answer is the inverse: it describes A in terms of the pose.",
+            "Read the names again: which frame is described, and which one is it described in?",
+        ),
+        Misconception(
+            "orientation-identity",
+            _with_orientation(lambda a_T_b, pose_in_b: (0, 0, 0, 1)),
+            "The position is right, but the orientation is 0, 0, 0, 1, which means no rotation.",
+            "The pose is turned in B, and B is turned in A: both belong in the answer.",
+        ),
+        Misconception(
+            "orientation-missing", _with_orientation(lambda a_T_b, pose_in_b: (0, 0, 0, 0)), *NO_ORIENTATION
+        ),
+        Misconception(
+            "wrong-orientation",
+            _with_orientation(lambda a_T_b, pose_in_b: quaternion(a_T_b[:3, :3])),
+            "The position is right, but the orientation is B's alone.",
+            "The pose is turned in B, and B is turned in A: both belong in the answer.",
+        ),
+        Misconception(
+            "rotation-transposed",
+            _with_orientation(lambda a_T_b, pose_in_b: quaternion((a_T_b @ matrix(pose_in_b))[:3, :3].T)),
+            "The position is right, but the orientation is the opposite turn.",
+            "Was a rotation transposed, or a quaternion conjugated, on the way to the answer?",
+        ),
+        *(
+            Misconception(
+                "quaternion-order",
+                _with_orientation(lambda T, p, order=order: orientation(transform_pose(T, p))[order]),
+                *QUATERNION_ORDER,
+            )
+            for order in ([3, 0, 1, 2], [3, 2, 1, 0])
+        ),
+        *(
+            Misconception(
+                "quaternion-order",
+                _with_orientation(lambda T, p, order=order: _read_in_another_order(T, p, order)),
+                *QUATERNION_ORDER,
+            )
+            for order in ([3, 0, 1, 2], [1, 2, 3, 0], [3, 2, 1, 0])
+        ),
+    ),
+)
+
+EXERCISES = (CHAIN, TRANSFORM_POSE)
