@@ -1,1 +1,12 @@
-"""The grader of the transform lab: exercises, judge, sandbox, nbgrader plug-in, reports and the command line."""
+"""The grader of the transform lab: exercises, judge, sandbox, nbgrader plug-in, reports and the command line.
+
+The students' package `transform_lab` lies beside the notebooks (nbgrader copies it from there), so its folder is put on
+the path here, once for every way into the grader.
+"""
+
+import sys
+from pathlib import Path
+
+_SOURCE = str(Path(__file__).resolve().parent.parent / "source" / "transforms")
+if _SOURCE not in sys.path:
+    sys.path.insert(0, _SOURCE)

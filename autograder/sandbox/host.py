@@ -26,6 +26,7 @@ class Limits:
     cell: float = 20.0
     call: float = 4.0
     notebook: float = 90.0
+    submission: float = 240.0
     grace: float = 1.0  # between the interrupt and the end of the process
     start: float = 60.0
     memory: int = 2_000_000_000  # bytes of address space for each process
@@ -73,6 +74,7 @@ class Sandbox:
         self.process = self.control = self.folder = self.errors = None
 
     def __enter__(self):
+        self.deadline = time.monotonic() + self.limits.submission
         self._start()
         return self
 
@@ -151,7 +153,8 @@ class NotebookProcess:
         connection, inside = socket.socketpair()
         connection.settimeout(self.limits.grace + 5)  # for sending to a process that does not read
         self.channel = Channel(connection)
-        self.deadline = time.monotonic() + self.limits.notebook
+        self.deadline = min(time.monotonic() + self.limits.notebook, sandbox.deadline)
+        self.gone = False  # whether its process had to be stopped, or died
         socket.send_fds(sandbox.control, [b"S"], [inside.fileno()])
         inside.close()
 
@@ -178,7 +181,7 @@ class NotebookProcess:
             count = reply["execution_count"]
             return CellRun(outputs, count if type(count) is int else None, reply["ended"] is True, reply["interrupted"] is True)
         except (KeyError, TypeError, ValueError) as error:
-            raise Ended("killed") from error
+            raise self._ended("killed") from error
 
     def call(self, name, args, kwargs):
         """Call the notebook's function `name` with plain arguments: a Reply; "timeout" or "killed" are outcomes."""
@@ -188,14 +191,15 @@ class NotebookProcess:
             return Reply(ended.status)
         outcome, error = reply.get("outcome"), reply.get("error", "")
         if outcome not in ("returned", "raised", "not done", "undefined", "timeout") or not isinstance(error, str):
+            self.gone = True
             return Reply("killed")
         return Reply(outcome, reply.get("value"), reply.get("arguments"), error[:300])
 
     def _request(self, action, arguments, seconds):
         nonce = secrets.token_hex(16)
         now = time.monotonic()
-        if now >= self.deadline:
-            raise Ended("timeout")
+        if self.gone or now >= self.deadline:
+            raise self._ended("timeout")
         deadline = min(now + seconds, self.deadline)
         try:
             self.channel.send({"nonce": nonce, "action": action, "arguments": arguments})
@@ -205,6 +209,10 @@ class NotebookProcess:
                 self.sandbox.control.sendall(b"I")
                 return self.channel.answer_to(nonce, deadline + self.limits.grace)
         except Late as error:
-            raise Ended("timeout") from error
+            raise self._ended("timeout") from error
         except (Closed, Garbled, OSError) as error:
-            raise Ended("killed") from error
+            raise self._ended("killed") from error
+
+    def _ended(self, status):
+        self.gone = True
+        return Ended(status)

@@ -25,6 +25,14 @@ def title(verdict):
     return f"{verdict.exercise}: not right yet."
 
 
+def summary(verdict):
+    """What there is to say about an answer that is not right, in one line; nothing about one that is."""
+    if verdict.right:
+        return ""
+    found = f"[{', '.join(verdict.misconceptions)}] " if verdict.misconceptions else ""
+    return found + (verdict.says or title(verdict).partition(": ")[2])
+
+
 def text(verdict, points=None, numbers=True):
     """The whole verdict in plain text, for terminals, screen readers and nbgrader."""
     return "\n".join([title(verdict), *_sentences(verdict, points), *_example(verdict, numbers)])

@@ -1,0 +1,22 @@
+"""`python3 -m autograder …`: makes its environment if need be, then hands over to the commands."""
+
+import sys
+from pathlib import Path
+
+from . import environment
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+def main():
+    try:
+        environment.ensure(ROOT, sys.argv[1:])
+    except environment.SetupFailed as failure:
+        sys.exit(str(failure))
+    from .commands import run
+
+    sys.exit(run(sys.argv[1:]))
+
+
+if __name__ == "__main__":
+    main()

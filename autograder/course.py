@@ -1,0 +1,111 @@
+"""Where things lie in a course, and what was released: the facts that every command starts from."""
+
+import hashlib
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import nbformat
+
+from .exercises import EXERCISES
+
+ASSIGNMENT = "transforms"
+
+
+class CourseError(Exception):
+    """Something about the course's folders is not as it has to be; the message says what and what to do."""
+
+
+@dataclass(frozen=True)
+class Course:
+    """A course directory, as nbgrader understands it."""
+
+    root: Path
+
+    def __post_init__(self):
+        if not self.source.is_dir():
+            raise CourseError(
+                f"{self.root} is no course folder: there is no source/{ASSIGNMENT} in it. "
+                "Change to the folder that holds nbgrader_config.py and run the command again."
+            )
+
+    @property
+    def source(self):
+        return self.root / "source" / ASSIGNMENT
+
+    @property
+    def package(self):
+        """The students' package, as the instructor has it."""
+        return self.source / "transform_lab"
+
+    @property
+    def release(self):
+        return self.root / "notebooks" / ASSIGNMENT
+
+    @property
+    def reports(self):
+        return self.root / "reports" / ASSIGNMENT
+
+    @property
+    def gradebook(self):
+        return self.root / "gradebook.db"
+
+    def submitted(self, student):
+        return self.root / "submitted" / student / ASSIGNMENT
+
+    def autograded(self, student):
+        return self.root / "autograded" / student / ASSIGNMENT
+
+    def feedback(self, student):
+        return self.root / "feedback" / student / ASSIGNMENT
+
+    def students(self):
+        """Those who handed the assignment in, by the folders below submitted/."""
+        folder = self.root / "submitted"
+        if not folder.is_dir():
+            raise CourseError(
+                "There is no submitted/ folder. Put each student's files into "
+                f"submitted/STUDENT/{ASSIGNMENT}/ (or run `nbgrader collect {ASSIGNMENT}`), then grade."
+            )
+        return sorted(path.name for path in folder.iterdir() if not path.name.startswith(".") and self.submitted(path.name).is_dir())
+
+    @cached_property
+    def notebooks(self):
+        """The released notebooks, {name: Released}, in order."""
+        paths = sorted(self.release.glob("*.ipynb"))
+        if not paths:
+            raise CourseError(
+                f"{ASSIGNMENT} was never released: there are no notebooks in notebooks/{ASSIGNMENT}. "
+                "Run `python3 -m autograder release` first."
+            )
+        return {path.stem: Released(path.stem, path.read_text(encoding="utf-8")) for path in paths}
+
+
+@dataclass(frozen=True)
+class Released:
+    """A notebook as students got it: the measure for what they hand in."""
+
+    name: str
+    text: str
+
+    @cached_property
+    def notebook(self):
+        return nbformat.reads(self.text, as_version=4)
+
+    @cached_property
+    def cells(self):
+        """The cells nbgrader knows about, {grade_id: cell}, in order."""
+        return {cell.metadata.nbgrader.grade_id: cell for cell in self.notebook.cells if "nbgrader" in cell.metadata}
+
+    @cached_property
+    def points(self):
+        """The exercises in this notebook, {name: points}, in order."""
+        return {
+            name: float(cell.metadata.nbgrader.points)
+            for name, cell in self.cells.items()
+            if cell.metadata.nbgrader.grade and name in EXERCISES
+        }
+
+    @property
+    def digest(self):
+        return hashlib.sha256(self.text.encode()).hexdigest()

@@ -1,0 +1,80 @@
+"""The project's own environment: `.venv`, made from environment.txt on first use. Only the standard library is used here.
+
+An interpreter that already has every package at its version is used as it is. Otherwise `.venv` is made, once; a stamp
+written last says that it is whole, so a set-up that failed or was interrupted is repaired by the next command.
+"""
+
+import hashlib
+import os
+import re
+import shutil
+import subprocess
+import sys
+from importlib import metadata
+from pathlib import Path
+
+OLDEST = (3, 11)
+
+
+class SetupFailed(Exception):
+    """The environment could not be made; the message says what to do."""
+
+
+def ensure(root, arguments):
+    """Return when this interpreter can run the project in `root`; else go on in `.venv` (this call does not return)."""
+    if sys.version_info < OLDEST:
+        raise SetupFailed(f"Python {'.'.join(map(str, OLDEST))} or newer is needed; this is {sys.version.split()[0]}.")
+    if not lacking(root / "environment.txt"):
+        _use(Path(sys.prefix, "bin"))
+        return
+    if Path(sys.prefix) == root / ".venv":
+        # Its packages were changed by hand: make it anew, with the Python that it was made from.
+        (root / ".venv" / "stamp").unlink(missing_ok=True)
+    python = make(root)
+    os.environ.pop("PYTHONPATH", None)
+    os.execv(python, [str(python), "-m", "autograder", *arguments])
+
+
+def lacking(requirements):
+    """The requirements that this interpreter does not have at their version."""
+    absent = []
+    for name, version in re.findall(r"^([\w.-]+)==([\w.]+)", requirements.read_text(encoding="utf-8"), re.MULTILINE):
+        try:
+            found = metadata.version(name)
+        except metadata.PackageNotFoundError:
+            found = None
+        if found != version:
+            absent.append(name)
+    return absent
+
+
+def make(root):
+    """Make `.venv` in `root` unless it is whole already; returns its interpreter."""
+    folder, requirements = root / ".venv", root / "environment.txt"
+    python, stamp = folder / "bin" / "python", folder / "stamp"
+    digest = hashlib.sha256(requirements.read_bytes()).hexdigest()
+    if stamp.exists() and stamp.read_text() == digest and python.exists():
+        return python
+    print("Setting up: installing the packages of environment.txt into .venv (once; a minute or two) …", file=sys.stderr)
+    base = getattr(sys, "_base_executable", None) or sys.executable
+    shutil.rmtree(folder, ignore_errors=True)
+    steps = (
+        [base, "-m", "venv", str(folder)],
+        [str(python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-r", str(requirements)],
+    )
+    for step in steps:
+        result = subprocess.run(step, stdin=subprocess.DEVNULL, capture_output=True, text=True)
+        if result.returncode != 0:
+            reason = "\n".join((result.stderr or result.stdout).strip().splitlines()[-5:])
+            raise SetupFailed(
+                f"The set-up failed at: {' '.join(step[1:4])}\n{reason}\n"
+                "Check the network (and that Python's venv module is installed: apt install python3-venv), then run the "
+                "same command again; it starts over."
+            )
+    stamp.write_text(digest)
+    return python
+
+
+def _use(scripts):
+    """nbgrader runs `alembic` and `jupyter` by name: they have to be those of this environment."""
+    os.environ["PATH"] = f"{scripts}{os.pathsep}{os.environ.get('PATH', '')}"

@@ -1,0 +1,141 @@
+"""The one writer: graded submissions into nbgrader's gradebook and the autograded/ folder.
+
+The marks are those that nbgrader's own SaveAutoGrades would record from the same notebooks, in one transaction for each
+student instead of one for each cell.
+"""
+
+import csv
+import io
+import shutil
+import time
+from pathlib import Path
+
+import nbformat
+from nbgrader import utils
+from nbgrader.api import Gradebook, MissingEntry
+from nbgrader.coursedir import CourseDirectory
+from nbgrader.preprocessors import AssignLatePenalties
+from sqlalchemy.exc import OperationalError
+from traitlets.config import PyFileConfigLoader
+
+from .course import ASSIGNMENT, CourseError
+
+RELEASE = "Run `python3 -m autograder release` first."
+PATIENCE = 60.0  # seconds to wait for a database that somebody else has locked
+
+
+def settings(course):
+    """nbgrader's configuration of this course: database, late penalties and what else nbgrader_config.py sets."""
+    return PyFileConfigLoader("nbgrader_config.py", path=str(course.root)).load_config()
+
+
+class Writer:
+    """Records Graded submissions; a context manager that holds the gradebook open."""
+
+    def __init__(self, course):
+        self.course, self.config = course, settings(course)
+        self.db_url = CourseDirectory(config=self.config).db_url
+
+    def __enter__(self):
+        if self.db_url.startswith("sqlite") and not self.course.gradebook.exists():
+            raise CourseError(f"{ASSIGNMENT} was never released here: there is no gradebook.db. {RELEASE}")
+        self.gradebook = Gradebook(self.db_url)
+        try:
+            self.gradebook.find_assignment(ASSIGNMENT)
+        except MissingEntry:
+            self.gradebook.close()
+            raise CourseError(f"{ASSIGNMENT} was never released: the gradebook does not know it. {RELEASE}") from None
+        return self
+
+    def __exit__(self, *_):
+        self.gradebook.close()
+
+    def students(self):
+        """Those who have a submission in the gradebook."""
+        return {submission.student_id for submission in self.gradebook.assignment_submissions(ASSIGNMENT)}
+
+    def record(self, graded):
+        """Write one Graded: first the files, then the marks; each replaces what was there as a whole."""
+        self._write_files(graded)
+        start = time.monotonic()
+        while True:
+            try:
+                self._write_marks(graded)
+                return
+            except OperationalError:
+                self.gradebook.db.rollback()
+                if time.monotonic() - start > PATIENCE:
+                    raise
+                time.sleep(0.5)
+
+    def totals(self):
+        """CSV text: each student's points, automatic and manual, as the gradebook has them."""
+        table = io.StringIO()
+        writer = csv.writer(table, lineterminator="\n")
+        writer.writerow(("student", "score", "max_score", "needs_manual_grade"))
+        for submission in sorted(self.gradebook.assignment_submissions(ASSIGNMENT), key=lambda found: found.student_id):
+            waiting = "yes" if submission.needs_manual_grade else "no"
+            writer.writerow((submission.student_id, submission.score, submission.max_score, waiting))
+        return table.getvalue()
+
+    def remove(self, student):
+        """Forget a student and all that was made for them."""
+        for folder in ("submitted", "autograded", "feedback"):
+            shutil.rmtree(self.course.root / folder / student, ignore_errors=True)
+        try:
+            self.gradebook.remove_student(student)
+        except MissingEntry:
+            return
+
+    def _write_files(self, graded):
+        folder = self.course.autograded(graded.student)
+        fresh = folder.with_name(f".{folder.name}.new")
+        shutil.rmtree(fresh, ignore_errors=True)
+        fresh.mkdir(parents=True)
+        for name, text in graded.notebooks.items():
+            Path(fresh, f"{name}.ipynb").write_text(text, encoding="utf-8")
+        timestamp = self.course.submitted(graded.student) / "timestamp.txt"
+        if timestamp.is_file():
+            shutil.copy(timestamp, fresh / "timestamp.txt")
+        if folder.exists():
+            shutil.rmtree(folder)
+        fresh.rename(folder)
+
+    def _write_marks(self, graded):
+        book = self.gradebook
+        book.update_or_create_student(graded.student)
+        timestamp = self._timestamp(graded.student)
+        submission = book.update_or_create_submission(ASSIGNMENT, graded.student, **timestamp)
+        for notebook in submission.notebooks:
+            text = graded.notebooks.get(notebook.name)
+            if text is None:
+                for grade in notebook.grades:
+                    grade.auto_score, grade.needs_manual_grade = 0, False
+                continue
+            cells = {
+                cell.metadata.nbgrader.grade_id: cell
+                for cell in nbformat.reads(text, as_version=4).cells
+                if "nbgrader" in cell.metadata
+            }
+            for grade in notebook.grades:
+                grade.auto_score, _ = utils.determine_grade(cells[grade.name])
+                grade.needs_manual_grade = grade.manual_score is not None or grade.auto_score is None
+            for comment in notebook.comments:
+                cell = cells[comment.name]
+                unchanged = cell.metadata.nbgrader.get("checksum") == utils.compute_checksum(cell)
+                comment.auto_comment = "No response." if unchanged else None
+            notebook.late_submission_penalty = None
+        book.db.commit()
+        if submission.total_seconds_late > 0:
+            self._penalize(graded)
+
+    def _timestamp(self, student):
+        path = self.course.submitted(student) / "timestamp.txt"
+        text = path.read_text(encoding="utf-8").strip() if path.is_file() else ""
+        return {"timestamp": utils.parse_utc(text)} if text else {}
+
+    def _penalize(self, graded):
+        """Late penalties are nbgrader's to decide, by the plug-in that its configuration names."""
+        for name in graded.notebooks:
+            resources = {"notebook": name, "assignment": ASSIGNMENT, "student": graded.student, "db_url": self.db_url}
+            AssignLatePenalties(config=self.config).preprocess(nbformat.v4.new_notebook(), {"nbgrader": resources})

@@ -1,0 +1,65 @@
+"""What nbgrader calls: `nbgrader autograde`, and the formgrader's button, through our intake and judge.
+
+nbgrader_config.py names the three classes here. nbgrader keeps its own part: folders, gradebook, late penalties.
+"""
+
+import io
+from functools import cached_property
+from pathlib import Path
+
+import nbformat
+from nbconvert.exporters import NotebookExporter
+from nbgrader.converters.base import NbGraderException
+from nbgrader.preprocessors import NbGraderPreprocessor
+from traitlets import Bool
+
+from . import sandbox
+from .course import Course
+from .grading import RECORD, assignment, collect, new_seed, record
+from .intake import Intake, restore
+from .judge import judge, rows
+
+
+class Exporter(NotebookExporter):
+    """Reads notebooks for `nbgrader autograde`: a submitted one goes through the intake, so none stops the batch.
+
+    nbgrader makes one for each run; the run's hidden cases live as long.
+    """
+
+    unsafe_no_sandbox = Bool(False, help="Run students' code without protection, as this user.").tag(config=True)
+
+    @cached_property
+    def course(self):
+        return Course(Path.cwd())  # nbgrader works from the course's root
+
+    @cached_property
+    def assignment(self):
+        problem = sandbox.problem()
+        if problem and not self.unsafe_no_sandbox:
+            raise NbGraderException(f"{problem} To grade without protection: --Exporter.unsafe_no_sandbox=True")
+        return assignment(self.course, new_seed(), isolated=not self.unsafe_no_sandbox)
+
+    def from_filename(self, filename, resources=None, **kwargs):
+        path = Path(filename)
+        if "submitted" not in path.resolve().relative_to(self.course.root.resolve()).parts[:1]:
+            return super().from_filename(filename, resources, **kwargs)
+        intake = restore(path.read_bytes(), self.course.notebooks[path.stem])
+        for problem in intake.problems:
+            self.log.warning(problem)
+        intake.notebook.metadata[RECORD] = {"statuses": intake.statuses, "problems": intake.problems}
+        return self.from_file(io.StringIO(nbformat.writes(intake.notebook)), resources, **kwargs)
+
+
+class Judge(NbGraderPreprocessor):
+    """Takes the place of nbgrader's Execute: runs the notebook in a sandbox and puts a verdict at each test cell."""
+
+    def preprocess(self, nb, resources):
+        names = resources["nbgrader"]
+        grader = self.parent.assignment
+        released = grader.released[names["notebook"]]
+        intake = Intake(nb, dict(nb.metadata[RECORD]["statuses"]), list(nb.metadata[RECORD]["problems"]))
+        submission = collect(self.parent.course, names["student"])
+        with grader.sandbox(submission) as box:
+            verdicts = judge(intake, released, grader.keys, box)
+        nb.metadata[RECORD] = nbformat.from_dict(record(rows(released, verdicts), intake.problems, grader, submission.digest))
+        return nb, resources

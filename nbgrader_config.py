@@ -1,0 +1,28 @@
+"""nbgrader reads this from the course's root: `nbgrader autograde transforms` and the formgrader grade through our plug-in."""
+
+import sys
+from pathlib import Path
+
+ROOT = str(Path(__file__).resolve().parent)
+if ROOT not in sys.path:
+    sys.path.insert(0, ROOT)
+
+c = get_config()  # noqa: F821 (nbgrader provides it)
+
+c.CourseDirectory.root = ROOT
+c.CourseDirectory.release_directory = "notebooks"
+
+# Submitted notebooks are mended on the way in, so that a broken one stops neither its student's others nor the batch.
+c.Autograde.exporter_class = "autograder.plugin.Exporter"
+c.Autograde.sanitize_preprocessors = [
+    "nbgrader.preprocessors.OverwriteCells",
+    "nbgrader.preprocessors.CheckCellMetadata",
+]
+# In place of nbgrader's Execute, our judge: a sandbox for the notebook, verdicts from outside its process.
+c.Autograde.autograde_preprocessors = [
+    "autograder.plugin.Judge",
+    "nbgrader.preprocessors.LimitOutput",
+    "nbgrader.preprocessors.SaveAutoGrades",
+    "nbgrader.preprocessors.AssignLatePenalties",
+    "nbgrader.preprocessors.CheckCellMetadata",
+]
