@@ -131,6 +131,10 @@ class _Recorder:
         self.commands = []
 
     def send(self, command):
+        element = getattr(command, "object", None)
+        if element is not None:
+            # meshcat draws identifiers at random; fixed ones make the same page of the same scene, and a smaller one
+            element.uuid, element.geometry.uuid, element.material.uuid = "object", "geometry", "material"
         self.commands.append(command.lower())
 
 
@@ -208,7 +212,7 @@ def over_picture(page, picture, description, caption, aspect):
     return (
         '<figure style="margin: 0; max-width: 760px">'
         f'<div style="position: relative; aspect-ratio: {aspect:g}; background: white">'
-        f'<img src="data:image/png;base64,{source}" alt="{html.escape(description)}" style="width: 100%">'
+        f'<img src="data:image/png;base64,{source}" alt="{html.escape(description)}" width="100%">'
         f'<iframe srcdoc="{html.escape(page)}" title="{html.escape(caption)}" loading="lazy"'
         ' style="position: absolute; inset: 0; width: 100%; height: 100%; border: 0"></iframe>'
         f"</div><figcaption>{html.escape(caption)}</figcaption></figure>"

@@ -8,7 +8,7 @@ import numpy as np
 from .shapes import BESIDE
 
 HEIGHT = 4.5  # inches
-DOTS_PER_INCH = 140
+DOTS_PER_INCH = 130
 LIGHT = np.array([0.3, 0.2, 0.95])  # in the camera's right, up and backward directions
 
 

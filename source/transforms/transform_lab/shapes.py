@@ -5,6 +5,7 @@ interactive page and the still picture are drawn from the same nodes.
 """
 
 from dataclasses import dataclass, field
+from urllib.parse import quote
 
 import numpy as np
 
@@ -66,6 +67,11 @@ class Node:
     labels: list = field(default_factory=list)
 
 
+def path(kind, name):
+    """Return the path of the node for `name`, which may contain slashes, as "base/camera" does."""
+    return f"{kind}/{quote(name, safe='')}"
+
+
 def placed(kind, position, size, color):
     """Return a Solid at `position`, its axes along those of the node, of `size` (3 numbers or one)."""
     matrix = np.eye(4)
@@ -101,7 +107,7 @@ def arrow(tail, tip, color, shaft, head, head_length):
 
 def frame_node(name, transform, length):
     """Return a Node with a frame's three axes, the letters at their tips, and its name."""
-    node = Node("frames/" + name.replace("/", "_"), transform)
+    node = Node(path("frames", name), transform)
     for letter, axis, color in zip("XYZ", np.eye(3), (X_RED, Y_GREEN, Z_BLUE)):
         node.solids += arrow((0, 0, 0), length * axis, color, 0.05 * length, 0.13 * length, 0.24 * length)
         node.labels.append(Label(letter, 1.12 * length * axis, color))

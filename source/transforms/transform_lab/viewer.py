@@ -12,7 +12,7 @@ import numpy as np
 
 from . import tft
 from .messages import Marker
-from .shapes import Label, Node, arrow, draw_marker, frame_node, marker_type, placed, rgba, rod, xyz, GREY
+from .shapes import GREY, Label, Node, arrow, draw_marker, frame_node, marker_type, path, placed, rgba, rod, xyz
 from .validation import numbers, rigid_transform, row_text
 
 __all__ = ["Viewer"]
@@ -102,7 +102,8 @@ class Viewer:
     def add_point(self, name, position, frame=None, color=ORANGE):
         """Add the point `name`, or replace it: `position` is a Point or 3 numbers in `frame`.
 
-        By default the frame is the fixed one. Four numbers are taken as homogeneous coordinates. `color` is a ColorRGBA, or 3 or 4 numbers from 0 to 1.
+        By default the frame is the fixed one. Four numbers are taken as homogeneous coordinates. `color` is a
+        ColorRGBA, or 3 or 4 numbers from 0 to 1.
         """
         frame = self._known(self.fixed_frame if frame is None else frame, f"add_point({name!r}): the frame")
         self._points[name] = _Point(frame, _position(position, f"add_point({name!r}): the position"), rgba(color))
@@ -236,15 +237,15 @@ class Viewer:
         for name, frame in self._frames.items():
             if frame.parent is not None:
                 line = rod(where[frame.parent][:3, 3], where[name][:3, 3], 0.25 * thickness, GREY)
-                nodes.append(Node("links/" + name.replace("/", "_"), np.eye(4), line))
+                nodes.append(Node(path("links", name), np.eye(4), line))
         for name, p in self._points.items():
             ball = placed("sphere", p.position, 3 * thickness, p.color)
             label = Label(name, p.position, _readable(p.color), beside=True)
-            nodes.append(Node("points/" + name.replace("/", "_"), where[p.frame], [ball], labels=[label]))
+            nodes.append(Node(path("points", name), where[p.frame], [ball], labels=[label]))
         for name, a in self._arrows.items():
             solids = arrow(a.tail, a.tip, a.color, thickness, 2.6 * thickness, 4.8 * thickness)
             label = Label(name, (a.tail + a.tip) / 2, _readable(a.color), beside=True)
-            nodes.append(Node("arrows/" + name.replace("/", "_"), where[a.frame], solids, labels=[label]))
+            nodes.append(Node(path("arrows", name), where[a.frame], solids, labels=[label]))
         grid, step = _grid(seen)
         lengths = sorted({frame.length or length for frame in self._frames.values()})
         caption = (

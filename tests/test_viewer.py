@@ -1,0 +1,389 @@
+"""The viewer: what it accepts, what it says, and that its page and its picture show the frames where they are."""
+
+import base64
+import html
+import io
+import math
+import os
+import re
+import shutil
+import subprocess
+import sys
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from transform_lab import page, picture, shapes
+from transform_lab.camera import Camera
+from transform_lab.markers import arrow_marker, axis_marker
+from transform_lab.messages import ColorRGBA, Header, Marker, Point, Pose, PoseStamped, Quaternion, Vector3
+from transform_lab.viewer import ASPECT, Viewer
+
+pytestmark = pytest.mark.filterwarnings("ignore:zmq.eventloop.ioloop is deprecated")  # by meshcat
+
+HALF = math.sqrt(0.5)
+A_T_B = np.array([[0, -1.0, 0, 1], [1, 0, 0, 2], [0, 0, 1, 3], [0, 0, 0, 1]])  # a quarter turn about z
+B_T_C = np.array([[1.0, 0, 0, 0.5], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])  # a quarter turn about x
+POSE_OF_B = Pose(Point(1, 2, 3), Quaternion(0, 0, HALF, HALF))
+
+
+@pytest.fixture
+def viewer():
+    """A chain a, b, c, with axes of 1 m."""
+    viewer = Viewer("a")
+    viewer.add_frame("b", A_T_B, length=1)
+    viewer.add_frame("c", B_T_C, parent="b")
+    return viewer
+
+
+def marker(kind, points=(), **fields):
+    color, scale = ColorRGBA(1, 0.5, 0, 1), Vector3(0.1, 0.2, 0.3)
+    return Marker(header=Header(0, 0, "a"), type=kind, color=color, scale=scale, points=list(points), **fields)
+
+
+# Filling the scene
+
+
+def test_lookup_chains_and_inverts(viewer):
+    np.testing.assert_allclose(viewer.lookup("a", "c"), A_T_B @ B_T_C, atol=1e-12)
+    np.testing.assert_allclose(viewer.lookup("c", "a") @ A_T_B @ B_T_C, np.eye(4), atol=1e-12)
+    np.testing.assert_allclose(viewer.lookup("b", "c"), B_T_C, atol=1e-12)
+    np.testing.assert_array_equal(viewer.lookup("a", "a"), np.eye(4))
+
+
+def test_a_frame_that_is_replaced_takes_its_children_along(viewer):
+    viewer.add_frame("b", np.eye(4))
+    np.testing.assert_allclose(viewer.lookup("a", "c"), B_T_C, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "transform",
+    [
+        A_T_B,
+        A_T_B.tolist(),
+        A_T_B.astype(np.float32),
+        POSE_OF_B,
+        PoseStamped(Header(0, 0, "a"), POSE_OF_B),
+        SimpleNamespace(position=SimpleNamespace(x=1, y=2, z=3), orientation=SimpleNamespace(x=0, y=0, z=HALF, w=HALF)),
+    ],
+    ids=["matrix", "list", "float32", "Pose", "PoseStamped", "another Pose"],
+)
+def test_what_a_frame_is_made_from(transform):
+    viewer = Viewer("a")
+    viewer.add_frame("b", transform)
+    np.testing.assert_allclose(viewer.lookup("a", "b"), A_T_B, atol=1e-12)
+
+
+def test_the_header_names_the_parent(viewer):
+    viewer.add_frame("d", PoseStamped(Header(0, 0, "b"), POSE_OF_B))
+    np.testing.assert_allclose(viewer.lookup("a", "d"), A_T_B @ A_T_B, atol=1e-12)
+    with pytest.raises(ValueError, match="parent='c', but header.frame_id is 'b'"):
+        viewer.add_frame("e", PoseStamped(Header(0, 0, "b"), POSE_OF_B), parent="c")
+
+
+def test_the_scene_keeps_copies(viewer):
+    matrix, sphere = A_T_B.copy(), marker(Marker.SPHERE)
+    viewer.add_frame("d", matrix)
+    viewer.publish(sphere)
+    matrix[0, 3] = sphere.pose.position.x = 9
+    assert viewer.lookup("a", "d")[0, 3] == 1
+    assert "SPHERE at (0, 0, 0)" in viewer.description()
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda v: v.lookup("a", "gripper"),
+        lambda v: v.lookup("gripper", "a"),
+        lambda v: v.add_frame("d", np.eye(4), parent="gripper"),
+        lambda v: v.add_point("p", (0, 0, 0), frame="gripper"),
+        lambda v: v.add_arrow("p", (0, 0, 1), frame="gripper"),
+        lambda v: v.publish(axis_marker(PoseStamped(Header(0, 0, "gripper"), POSE_OF_B))),
+    ],
+)
+def test_unknown_frames_are_named_with_those_that_are_known(viewer, call):
+    with pytest.raises(ValueError, match="'gripper' is not known. Known frames: a, b, c"):
+        call(viewer)
+
+
+@pytest.mark.parametrize(
+    "transform, message",
+    [
+        (np.eye(3), "must be a 4x4 homogeneous transform.*got 3x3"),
+        (np.full((4, 4), math.nan), "NaN or infinity"),
+        (A_T_B.T, r"bottom row 0, 0, 0, 1; it is 1, 2, 3, 1"),
+        (np.diag([1, 1, 1.1, 1]), "differs from the identity by up to 0.21"),
+        (np.diag([1, 1, -1, 1]), "the determinant is -1"),
+        (Pose(), r"length is 0\. A fresh Quaternion\(\) is no orientation"),
+        (Pose(Point(), Quaternion(0, 0, 1, 1)), r"quaternion of length 1; its length is 1\.414"),
+        (Pose(Point(math.inf, 0, 0), Quaternion(0, 0, 0, 1)), "position contains NaN or infinity"),
+    ],
+)
+def test_what_is_no_rigid_transform_is_refused(viewer, transform, message):
+    with pytest.raises(ValueError, match=r"add_frame\('d'\): the (pose|transform).*" + message):
+        viewer.add_frame("d", transform)
+    assert "frame d" not in viewer.description()
+
+
+def test_a_pose_with_an_array_as_orientation_is_refused(viewer):
+    pose = Pose()
+    pose.orientation = np.array([0, 0, 0, 1])
+    with pytest.raises(TypeError, match="has a ndarray as its orientation; that must be a Quaternion"):
+        viewer.add_frame("d", pose)
+
+
+def test_circles_and_the_fixed_frame_are_refused(viewer):
+    with pytest.raises(ValueError, match="circle"):
+        viewer.add_frame("b", np.eye(4), parent="c")
+    with pytest.raises(ValueError, match="'a' is the fixed frame"):
+        viewer.add_frame("a", np.eye(4))
+    with pytest.raises(ValueError, match="length must be above 0"):
+        viewer.add_frame("d", np.eye(4), length=0)
+
+
+def test_points(viewer):
+    viewer.add_point("p", Point(1, 2, 3), frame="b")
+    viewer.add_point("q", [1, 2, 3, 1])
+    assert "point p in b: (1, 2, 3)" in viewer.description()
+    assert "point q in a: (1, 2, 3)" in viewer.description()
+    with pytest.raises(ValueError, match="the last must be 1; it is 0"):
+        viewer.add_point("r", [1, 2, 3, 0])
+    with pytest.raises(ValueError, match="numbers from 0 to 1"):
+        viewer.add_point("r", [1, 2, 3], color=(255, 0, 0))
+
+
+# Markers
+
+
+@pytest.mark.parametrize(
+    "drawn, kinds",
+    [
+        (marker(Marker.ARROW), ["cylinder", "cone"]),
+        (marker(Marker.ARROW, [Point(), Point(1, 0, 0)]), ["cylinder", "cone"]),
+        (marker(Marker.CUBE), ["box"]),
+        (marker(Marker.SPHERE), ["sphere"]),
+        (marker(Marker.CYLINDER), ["cylinder"]),
+        (marker(Marker.LINE_LIST, [Point(x, 0, 0) for x in range(4)]), ["cylinder"] * 2),
+        (marker(Marker.LINE_STRIP, [Point(x, 0, 0) for x in range(4)]), ["cylinder"] * 3),
+        (marker(Marker.CUBE_LIST, [Point(x, 0, 0) for x in range(4)]), ["box"] * 4),
+        (marker(Marker.SPHERE_LIST, [Point(x, 0, 0) for x in range(4)]), ["sphere"] * 4),
+    ],
+)
+def test_markers_become_solids(drawn, kinds):
+    node = shapes.Node("m", np.eye(4))
+    shapes.draw_marker(drawn, node)
+    assert [solid.kind for solid in node.solids] == kinds
+    assert all(solid.color == (1, 0.5, 0, 1) for solid in node.solids)
+
+
+def test_the_labs_arrow_ends_at_its_point():
+    node = shapes.Node("m", np.eye(4))
+    shapes.draw_marker(arrow_marker(Point(1, 2, 2)), node)
+    shaft, head = node.solids
+    np.testing.assert_allclose(shaft.matrix @ [0, 0, -0.5, 1], [0, 0, 0, 1], atol=1e-12)
+    np.testing.assert_allclose(head.matrix @ [0, 0, 0.5, 1], [1, 2, 2, 1], atol=1e-12)
+    np.testing.assert_allclose(np.linalg.norm(shaft.matrix[:3, 0]), 0.1)
+    np.testing.assert_allclose(np.linalg.norm(head.matrix[:3, 0]), 0.15)
+
+
+def test_points_and_text_markers():
+    node = shapes.Node("m", np.eye(4))
+    colors = [ColorRGBA(1, 0, 0, 1), ColorRGBA(0, 1, 0, 1)]
+    shapes.draw_marker(marker(Marker.POINTS, [Point(1, 2, 3), Point(4, 5, 6)], colors=colors), node)
+    shapes.draw_marker(marker(Marker.TEXT_VIEW_FACING, text="table"), node)
+    assert node.clouds[0].points.tolist() == [[1, 2, 3], [4, 5, 6]]
+    assert node.clouds[0].colors.tolist() == [[1, 0, 0, 1], [0, 1, 0, 1]]
+    assert node.labels[0].text == "table"
+
+
+@pytest.mark.parametrize(
+    "wrong, message",
+    [
+        (marker(Marker.MESH_RESOURCE), "MESH_RESOURCE are not drawn yet; these are: ARROW, CUBE"),
+        (marker(Marker.TRIANGLE_LIST), "TRIANGLE_LIST are not drawn yet"),
+        (marker(99), "type 99 are not drawn yet"),
+        (marker(Marker.LINE_LIST, [Point()]), "two points for each line; got 1"),
+        (marker(Marker.ARROW, [Point()]), "two points"),
+        (marker(Marker.CUBE, action=7), "action must be"),
+    ],
+)
+def test_markers_that_cannot_be_drawn_say_so(viewer, wrong, message):
+    with pytest.raises(ValueError, match=message):
+        viewer.publish(wrong)
+    assert "marker" not in viewer.description()
+
+
+def test_a_size_of_zero_is_refused(viewer):
+    cube = marker(Marker.CUBE)
+    cube.scale.z = 0
+    with pytest.raises(ValueError, match="scale.x, scale.y and scale.z must be above 0; got 0.1, 0.2, 0"):
+        viewer.publish(cube)
+
+
+def test_markers_replace_and_delete_each_other(viewer):
+    def types():
+        return re.findall(r"^marker (\S+) in a: (\w+)", viewer.description(), re.MULTILINE)
+
+    viewer.publish(marker(Marker.CUBE, ns="n", id=1))
+    viewer.publish(marker(Marker.SPHERE, ns="n", id=1))
+    viewer.publish(marker(Marker.CUBE, ns="n", id=2))
+    viewer.publish(marker(Marker.CUBE, ns="m", id=2))
+    assert types() == [("n/1", "SPHERE"), ("n/2", "CUBE"), ("m/2", "CUBE")]
+    viewer.publish(Marker(ns="n", id=2, action=Marker.DELETE))
+    assert types() == [("n/1", "SPHERE"), ("m/2", "CUBE")]
+    viewer.publish(Marker(action=Marker.DELETEALL))
+    assert types() == []
+
+
+def test_a_marker_is_drawn_in_the_frame_of_its_header(viewer):
+    viewer.publish(axis_marker(PoseStamped(Header(0, 0, "b"), Pose(Point(0.5, 0, 0), Quaternion(HALF, 0, 0, HALF)))))
+    node = viewer._scene()[0][-1]
+    np.testing.assert_allclose(node.transform, A_T_B @ B_T_C, atol=1e-12)
+
+
+def test_a_fresh_orientation_of_a_marker_is_no_rotation_and_no_opacity_is_invisible(viewer):
+    arrow = arrow_marker(Point(1, 0, 0))
+    arrow.header.frame_id, arrow.color.a = "b", 0
+    viewer.publish(arrow)
+    node = viewer._scene()[0][-1]
+    np.testing.assert_allclose(node.transform, A_T_B, atol=1e-12)
+    assert not node.solids and "invisible: color.a is 0" in viewer.description()
+
+
+# Showing it
+
+
+def test_the_description_says_where_everything_is(viewer):
+    viewer.add_arrow("p", (0, 0, 1), tail=(1, 0, 0), frame="c")
+    assert viewer.description().splitlines() == [
+        "Scene in the fixed frame a (metres)",
+        "frame b in a: position (1, 2, 3), x axis (0, 1, 0), y axis (-1, 0, 0), z axis (0, 0, 1)",
+        "frame c in b: position (0.5, 0, 0), x axis (1, 0, 0), y axis (0, 0, 1), z axis (0, -1, 0)",
+        "arrow p in c: from (1, 0, 0) to (0, 0, 1)",
+    ]
+    assert repr(viewer) == viewer.description()
+
+
+def test_one_display_holds_text_and_page_and_is_small(viewer):
+    bundle = viewer._repr_mimebundle_()
+    assert set(bundle) == {"text/plain", "text/html"}
+    assert bundle["text/plain"] == viewer.description()
+    assert len(bundle["text/html"]) + len(bundle["text/plain"]) < 350_000
+    assert html.escape(viewer.description()) in bundle["text/html"]  # the picture's alternative text
+    assert bundle["text/html"] in viewer.html()  # and the same scene gives the same page
+
+
+def test_nothing_is_rendered_while_grading():
+    code = (
+        "import sys; from transform_lab.viewer import Viewer; v = Viewer(); v.add_point('p', (1, 2, 3));"
+        "assert list(v._repr_mimebundle_()) == ['text/plain'];"
+        "sys.exit(any(name in sys.modules for name in ('meshcat', 'matplotlib', 'PIL', 'IPython')))"
+    )
+    environment = {"PYTHONPATH": os.pathsep.join(sys.path), "TRANSFORM_LAB_GRADING": "1"}
+    subprocess.run([sys.executable, "-c", code], check=True, env=environment)
+
+
+@pytest.mark.parametrize(
+    "points", [np.random.default_rng(1).normal(size=(40, 3)), [[0, 0, 0], [0.1, 0, 0]], [[1, 2, 3]]], ids=len
+)
+def test_all_points_are_in_view_and_fill_it(points):
+    camera = Camera(points, ASPECT)
+    places, depths = camera.project(points)
+    assert (depths > 0).all() and (places > 0).all() and (places < [ASPECT, 1]).all()
+    if len(points) > 1:
+        assert (np.ptp(places, axis=0) / [ASPECT, 1]).max() > 0.8
+
+
+def test_the_picture_shows_the_axes_in_their_colours_where_they_are(viewer):
+    nodes, grid, seen, _ = viewer._scene()
+    camera = Camera(seen, ASPECT)
+    image = np.array(Image.open(io.BytesIO(picture.render(nodes, grid, camera))).convert("RGB")).astype(int)
+    height, width, _ = image.shape
+    for name in "ac":
+        a_T_frame = viewer.lookup("a", name)
+        for channel in range(3):
+            halfway = a_T_frame @ np.append(0.5 * np.eye(3)[channel], 1)
+            x, y = camera.project(halfway[:3])[0]
+            pixel = image[height - 1 - int(y * height), int(x / ASPECT * width)]
+            assert pixel.argmax() == channel and np.sort(pixel)[2] > 2 * np.sort(pixel)[1], (name, channel, pixel)
+
+
+def test_what_is_nearer_covers_what_is_farther():
+    camera = Camera([[-1, -1, -1], [1, 1, 1]], ASPECT)
+    red = shapes.placed("sphere", 0.9 * camera.back, 0.5, (1, 0, 0, 1))
+    box = shapes.placed("box", -0.9 * camera.back, 0.5, (0, 0, 1, 1))
+    for solids in ([red, box], [box, red]):
+        png = picture.render([shapes.Node("n", np.eye(4), solids)], np.zeros((1, 2, 3)), camera)
+        image = Image.open(io.BytesIO(png)).convert("RGB")
+        r, _, b = image.getpixel((image.width // 2, image.height // 2))
+        assert r > 2 * b
+
+
+def test_meshcat_gets_the_transforms(viewer):
+    nodes, grid, _, _ = viewer._scene()
+    moved = {c["path"]: np.reshape(c["matrix"], (4, 4)).T for c in page.commands(nodes, grid)
+             if c["type"] == "set_transform"}  # fmt: skip
+    np.testing.assert_allclose(moved["/meshcat/frames/b"], A_T_B, atol=1e-12)
+    np.testing.assert_allclose(moved["/meshcat/frames/c"], A_T_B @ B_T_C, atol=1e-12)
+    # three.js's cone has its tip at y = +0.5: the first axis' tip, in its frame, is 1 m along x
+    np.testing.assert_allclose(moved["/meshcat/frames/b/solid1"] @ [0, 0.5, 0, 1], [1, 0, 0, 1], atol=1e-12)
+
+
+def test_names_may_contain_slashes(viewer):
+    viewer.add_frame("arm/c", np.eye(4), parent="b")
+    viewer.add_frame("arm_c", np.eye(4), parent="b")
+    paths = [node.path for node in viewer._scene()[0]]
+    assert len(set(paths)) == len(paths) and all(path.count("/") == 1 for path in paths)
+
+
+# In a browser
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+FLAGS = (
+    "--headless --no-sandbox --disable-gpu --disable-background-networking --disable-component-update --disable-sync"
+    " --no-first-run --virtual-time-budget=8000 --window-size=800,500 --dump-dom"
+).split()
+SOFTWARE_WEBGL = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+needs_chromium = pytest.mark.skipif(not CHROMIUM, reason="needs Chromium to open the page")
+
+
+def dom(text, folder, *flags):
+    """Return the elements that Chromium makes of a page."""
+    (folder / "page.html").write_text(text)
+    command = [CHROMIUM, *FLAGS, *flags, f"--user-data-dir={folder / 'profile'}", (folder / "page.html").as_uri()]
+    return subprocess.run(command, capture_output=True, text=True, timeout=60, check=True).stdout
+
+
+@needs_chromium
+def test_the_page_draws_the_scene_as_seen_by_the_camera(viewer, tmp_path):
+    viewer.add_point("</script><b>1", (1, 1, 1))
+    nodes, grid, seen, _ = viewer._scene()
+    camera = Camera(seen, ASPECT)
+    probe = """<script>setTimeout(() => {
+      const frames = window.viewer.scene_tree.find(["meshcat", "frames"]).children;
+      const v = window.viewer;
+      const p = frames.c.object.position.clone().setFromMatrixPosition(frames.c.object.matrixWorld).project(v.camera);
+      document.body.dataset.found = JSON.stringify({names: Object.keys(frames), place: [p.x, p.y]});
+    }, 3000)</script></body>"""
+    elements = dom(page.render(nodes, grid, camera).replace("</body>", probe), tmp_path, *SOFTWARE_WEBGL)
+    found = html.unescape(re.search(r'data-found="([^"]*)"', elements)[1])
+    assert '"names":["a","b","c"]' in found
+    x, y = camera.project(viewer.lookup("a", "c")[:3, 3])[0]
+    width, height = map(float, re.search(r"<canvas[^>]*width: ([\d.]+)px; height: ([\d.]+)px", elements).groups())
+    place = [float(v) for v in re.search(r'"place":\[([^,]*),([^\]]*)\]', found).groups()]
+    expected = [(x - ASPECT / 2) * 2 * height / width, 2 * y - 1]  # from -1 to 1 across the window
+    np.testing.assert_allclose(place, expected, atol=1e-3)
+    labels = re.findall(r'<div class="label"[^>]*>([^<]*)</div>', elements)
+    assert sorted(map(html.unescape, labels)) == sorted(["X", "Y", "Z"] * 3 + ["a", "b", "c", "</script><b>1"])
+
+
+@needs_chromium
+def test_without_webgl_the_picture_remains(viewer, tmp_path):
+    elements = dom(viewer.html(), tmp_path, "--disable-3d-apis")
+    assert "<iframe" not in elements and 'src="data:image/png;base64,' in elements
+    with_webgl = dom(viewer.html(), tmp_path, *SOFTWARE_WEBGL)
+    assert "<iframe" in with_webgl
+    png = base64.b64decode(re.search(r'src="data:image/png;base64,([^"]+)"', elements)[1])
+    assert Image.open(io.BytesIO(png)).width > 800
