@@ -215,6 +215,8 @@ def test_slerp():
         assert same_orientation(tft.quaternion_slerp(start, -end, fraction), expected)
     long_way = tft.quaternion_slerp(start, -end, 0.5, shortestpath=False)
     assert same_orientation(long_way, tft.quaternion_about_axis(0.6 + math.pi, [0, 1, 0]))
+    two_turns_more = tft.quaternion_slerp(start, end, 0.3, spin=2)
+    np.testing.assert_allclose(two_turns_more, tft.quaternion_about_axis(0.3 * (1.2 + 4 * math.pi), [0, 1, 0]))
     np.testing.assert_array_equal(tft.quaternion_slerp(start, start, 0.3), start)
 
 

@@ -81,7 +81,7 @@ def translation_matrix(direction):
 
 def translation_from_matrix(matrix):
     """Return the translation of a 4x4 transform, 3 numbers: the last column without its 1."""
-    return rigid_transform(matrix, "translation_from_matrix: the matrix")[:3, 3].copy()
+    return rigid_transform(matrix, "translation_from_matrix: the matrix")[:3, 3]
 
 
 def rotation_matrix(angle, direction, point=None):
@@ -231,7 +231,8 @@ def quaternion_inverse(quaternion):
 def quaternion_slerp(quat0, quat1, fraction, spin=0, shortestpath=True):
     """Return the quaternion at `fraction` (0 to 1) of the way from `quat0` to `quat1`, turning at constant speed.
 
-    `spin` adds half turns on the way. With `shortestpath`, the shorter of the two ways is taken; the result then ends
+    `spin` adds that many full turns on the way; give an even number, because for an odd one the result does not have
+    length 1 (as in ROS). With `shortestpath`, the shorter of the two ways is taken; the result then ends
     at `quat1` or at its negative, which is the same orientation. Source: K. Shoemake, "Animating rotation with
     quaternion curves", SIGGRAPH 1985.
     """
