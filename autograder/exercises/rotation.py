@@ -193,7 +193,7 @@ FROM_AXES = Exercise(
             "added-not-multiplied",
             _axes_with(lambda x, y: x + y),
             "Your z axis is the sum of x and y, which lies in their plane.",
-            "z stands at right angles to both x and y: which product of two vectors does that?",
+            "The z axis stands at right angles to both x and y: which product of two vectors does that?",
         ),
         *(
             Misconception(

@@ -1,0 +1,496 @@
+"""The exercises prove themselves: the reference is right, every misconception is caught and named, stubs earn nothing."""
+
+import json
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from autograder.exercises import EXERCISES, PUBLIC_SEED, key
+from scipy.spatial.transform import Rotation
+from transform_lab import Point, Pose, Quaternion, tft
+from transform_lab.check import call
+from transform_lab.verdict import TOLERANCE, agree, examine, parts_of
+
+pytestmark = pytest.mark.filterwarnings("ignore:the matrix subclass")  # np.matrix, which students still use
+
+SEEDS = (PUBLIC_SEED, 1, 7, 20_170_424, 987_654_321)
+NAMES = [
+    "rotation_about_z", "rotation_from_axes", "is_rotation", "same_rotation",
+    "make_transform", "hand_transform", "transform_to_pose", "pose_to_transform", "transform_point",
+    "chain", "transform_pose",
+    "invert_transform", "relative_transform", "object_in_gripper",
+    "pre_grasp", "waypoint",
+]  # fmt: skip
+HARD_TO_SPOIL = ("rotation_about_z", "hand_transform")  # they have no argument that can be changed
+
+every_exercise = pytest.mark.parametrize("name", NAMES)
+every_seed = pytest.mark.parametrize("seed", SEEDS)
+_keys = {}
+
+
+def judged(name, function, seed=PUBLIC_SEED):
+    """The Verdict on `function` as a student's solution of the exercise `name`."""
+    if (name, seed) not in _keys:
+        _keys[name, seed] = key(EXERCISES[name], seed)
+    with np.errstate(all="ignore"):  # wrong solutions divide by zero
+        return examine(name, _keys[name, seed], lambda args, kwargs: call(function, args, kwargs))
+
+
+def changed(name, change):
+    """The reference solution, its answer passed through `change`."""
+    return lambda *args, **kwargs: change(EXERCISES[name].reference(*args, **kwargs))
+
+
+def poses():
+    return [name for name in NAMES if EXERCISES[name].returns == "pose"]
+
+
+def arrays():
+    return [name for name in NAMES if EXERCISES[name].returns in ("rotation", "transform", "coordinates")]
+
+
+def test_the_exercises_are_those_of_the_design_in_its_order():
+    assert list(EXERCISES) == NAMES
+
+
+@every_seed
+@every_exercise
+def test_reference_is_right(name, seed):
+    verdict = judged(name, EXERCISES[name].reference, seed)
+    assert verdict.credit == 1.0
+    assert verdict.misconceptions == ()
+
+
+# --- right solutions written in another way ---------------------------------------------------------------------------
+
+
+def shepperd(matrix):
+    """The largest component from the diagonal, the others from it: S. W. Shepperd, J. Guidance and Control 1(3), 1978."""
+    R = np.asarray(matrix)[:3, :3]
+    numbers = [R[0, 0], R[1, 1], R[2, 2], np.trace(R)]
+    i = int(np.argmax(numbers))
+    q = np.zeros(4)
+    if i == 3:
+        q[:] = R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1], 1 + np.trace(R)
+    else:
+        j, k = (i + 1) % 3, (i + 2) % 3
+        q[i] = 1 + R[i, i] - R[j, j] - R[k, k]
+        q[j], q[k], q[3] = R[j, i] + R[i, j], R[k, i] + R[i, k], R[k, j] - R[j, k]
+    return q / np.linalg.norm(q)
+
+
+def bar_itzhack(matrix):
+    """The eigenvector of a symmetric 4x4 matrix: I. Y. Bar-Itzhack, J. Guidance, Control, and Dynamics 23(6), 2000."""
+    (a, b, c), (d, e, f), (g, h, i) = np.asarray(matrix)[:3, :3]
+    K = np.array([
+        [a - e - i, d + b, g + c, h - f],
+        [d + b, e - a - i, h + f, c - g],
+        [g + c, h + f, i - a - e, d - b],
+        [h - f, c - g, d - b, a + e + i],
+    ]) / 3.0  # fmt: skip
+    return np.linalg.eigh(K)[1][:, -1]
+
+
+def pose_with(quaternion_of):
+    def solution(matrix):
+        pose = Pose()
+        pose.position = Point(*matrix[:3, 3])
+        pose.orientation = Quaternion(*quaternion_of(matrix))
+        return pose
+
+    return solution
+
+
+def matrix_with_tft(pose):
+    q, p = pose.orientation, pose.position
+    T = tft.quaternion_matrix([q.x, q.y, q.z, q.w])
+    T[:3, 3] = p.x, p.y, p.z
+    return T
+
+
+def pre_grasp_as_in_the_lab(object_pose, distance=0.1):
+    object_T_pre_grasp = np.matrix(tft.translation_matrix([-distance, 0, 0]))
+    base_T_pre_grasp = np.array(np.matrix(matrix_with_tft(object_pose)) * object_T_pre_grasp)
+    return pose_with(tft.quaternion_from_matrix)(base_T_pre_grasp)
+
+
+def as_namespace(pose):
+    """A pose of another library: nothing but the same fields."""
+    p, q = pose.position, pose.orientation
+    return SimpleNamespace(
+        position=SimpleNamespace(x=p.x, y=p.y, z=p.z), orientation=SimpleNamespace(x=q.x, y=q.y, z=q.z, w=q.w)
+    )
+
+
+def rotation_about_z_in_a_list(degrees):
+    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    return [[c, -s, 0], [s, c, 0], [0, 0, 1]]
+
+
+def is_rotation_by_rows(R):
+    rows_fit = all(abs(R[i] @ R[j] - (i == j)) < 1e-6 for i in range(3) for j in range(3))
+    return 1 if rows_fit and abs(np.linalg.det(R) - 1) < 1e-6 else 0
+
+
+def chain_in_a_loop(*transforms):
+    result = np.eye(4)
+    for T in transforms:
+        result = np.dot(result, T)
+    return result
+
+
+def inverse_in_blocks(T):
+    R, p = T[:3, :3], T[:3, 3:]
+    return np.block([[R.T, -R.T @ p], [np.zeros((1, 3)), np.ones((1, 1))]])
+
+
+OTHER_WAYS = [
+    ("rotation_about_z", rotation_about_z_in_a_list),
+    ("rotation_about_z", lambda degrees: tft.rotation_matrix(np.deg2rad(degrees), (0, 0, 1))[:3, :3]),
+    ("rotation_from_axes", lambda x_axis, y_axis: np.array([x_axis, y_axis, np.cross(x_axis, y_axis)]).T),
+    ("is_rotation", is_rotation_by_rows),
+    ("is_rotation", lambda R: np.allclose(R @ R.T, np.eye(3)) and np.isclose(np.linalg.det(R), 1)),
+    ("is_rotation", lambda R: np.linalg.norm(R.T @ R - np.eye(3)) < 1e-6 and np.cross(R[:, 0], R[:, 1]) @ R[:, 2] > 0),
+    ("same_rotation", lambda q1, q2: np.isclose(abs(np.dot(q1, q2)), 1)),
+    ("same_rotation", lambda q1, q2: abs(abs(np.dot(q1, q2)) - 1) < 1e-6),
+    ("same_rotation", lambda q1, q2: np.allclose(tft.quaternion_matrix(q1), tft.quaternion_matrix(q2), atol=1e-6)),
+    ("make_transform", lambda R, p: np.vstack((np.column_stack((R, p)), [0, 0, 0, 1]))),
+    ("hand_transform", lambda: [[1, 0, 0, -0.1], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]]),
+    ("hand_transform", lambda: tft.translation_matrix([-0.1, 0, 0]) @ tft.rotation_matrix(-math.pi / 2, [1, 0, 0])),
+    ("transform_to_pose", pose_with(shepperd)),
+    ("transform_to_pose", pose_with(bar_itzhack)),
+    ("transform_to_pose", pose_with(tft.quaternion_from_matrix)),
+    ("pose_to_transform", matrix_with_tft),
+    ("transform_point", lambda a_T_b, p_in_b: (a_T_b @ np.append(p_in_b, 1))[:3]),
+    ("transform_point", lambda a_T_b, p_in_b: (np.matrix(a_T_b) * np.matrix(np.append(p_in_b, 1)).T)[:3]),
+    ("chain", chain_in_a_loop),
+    ("chain", tft.concatenate_matrices),
+    ("transform_pose", lambda a_T_b, pose: pose_with(shepperd)(np.dot(a_T_b, matrix_with_tft(pose)))),
+    ("invert_transform", inverse_in_blocks),
+    ("invert_transform", lambda a_T_b: np.linalg.solve(a_T_b, np.eye(4))),
+    ("relative_transform", np.linalg.solve),
+    ("object_in_gripper", lambda c, g, p: tuple(np.linalg.solve(g, c @ np.append(p, 1))[:3])),
+    ("pre_grasp", pre_grasp_as_in_the_lab),
+    ("waypoint", lambda pose, offset: pose_with(bar_itzhack)(matrix_with_tft(pose) @ tft.translation_matrix(offset))),
+]
+
+
+@every_seed
+@pytest.mark.parametrize("name, solution", OTHER_WAYS)
+def test_right_solutions_in_other_ways_are_right(name, solution, seed):
+    assert judged(name, solution, seed).credit == 1.0
+
+
+# --- misconceptions -----------------------------------------------------------------------------------------------------
+
+
+@every_seed
+@pytest.mark.parametrize(
+    "name, misconception",
+    [
+        pytest.param(name, misconception, id=f"{name}-{number}-{misconception.id}")
+        for name in NAMES
+        for number, misconception in enumerate(EXERCISES[name].misconceptions)
+    ],
+)
+def test_misconception_is_caught_and_named(name, misconception, seed):
+    verdict = judged(name, misconception.wrong, seed)
+    assert verdict.credit < 1.0
+    assert verdict.misconceptions == (misconception.id,)
+    assert (verdict.says, verdict.hint) == (misconception.says, misconception.hint)
+
+
+@every_exercise
+def test_misconceptions_are_written_for_students(name):
+    misconceptions = EXERCISES[name].misconceptions
+    assert len({misconception.id for misconception in misconceptions}) >= 4
+    for misconception in misconceptions:
+        assert misconception.id == misconception.id.lower().replace(" ", "-")
+        for sentence in (misconception.says, misconception.hint):
+            assert sentence[0].isupper() or sentence[0] in "`\"*", sentence
+            assert sentence[-1] in ".?", sentence
+
+
+@pytest.mark.parametrize("name, misconception, least, most", [
+    ("transform_to_pose", "position-missing", 0.5, 0.5),
+    ("transform_to_pose", "trace-formula-only", 0.6, 0.9),
+    ("make_transform", "position-missing", 0.4, 0.4),
+    ("invert_transform", "inverse-missing", 0.0, 0.0),
+    ("invert_transform", "inverse-parts-separately", 0.3, 0.3),
+    ("same_rotation", "sign-ignored", 0.0, 0.2),
+    ("is_rotation", "determinant-only", 0.2, 0.7),
+    ("pre_grasp", "base-frame-offset", 0.0, 0.0),
+    ("pre_grasp", "orientation-identity", 0.5, 0.5),
+    ("pre_grasp", "distance-ignored", 0.2, 0.4),
+])  # fmt: skip
+def test_partial_credit(name, misconception, least, most):
+    for wrong in (m.wrong for m in EXERCISES[name].misconceptions if m.id == misconception):
+        assert least <= judged(name, wrong).credit <= most
+
+
+# --- answers that are none ------------------------------------------------------------------------------------------------
+
+
+def upright():
+    return Pose(Point(), Quaternion(0, 0, 0, 1))
+
+
+CONSTANTS = [np.eye(4), np.eye(3), np.zeros((4, 4)), np.zeros((3, 3)), np.zeros(3), Pose(), upright(), True, False, 0.0]
+
+
+@every_seed
+@every_exercise
+def test_a_constant_earns_nothing(name, seed):
+    first = next(iter(EXERCISES[name].cases(np.random.default_rng(seed))))
+    known = [] if name == "hand_transform" else [EXERCISES[name].reference(*first.args, **first.kwargs)]
+    for constant in CONSTANTS + known:
+        assert judged(name, lambda *args, **kwargs: constant, seed).credit == 0.0
+    for constant in known:
+        assert judged(name, lambda *args, **kwargs: constant, seed).misconceptions != ()
+
+
+@every_seed
+@pytest.mark.parametrize("name", [name for name in NAMES if name != "hand_transform"])
+def test_an_unchanged_argument_earns_nothing(name, seed):
+    for which in (0, -1):
+        assert judged(name, lambda *args, **kwargs: args[which], seed).credit == 0.0
+
+
+@every_exercise
+def test_none_is_told(name):
+    verdict = judged(name, lambda *args, **kwargs: None)
+    assert (verdict.status, verdict.credit, verdict.misconceptions) == ("graded", 0.0, ("returned-none",))
+
+
+@every_exercise
+def test_wrong_shape_and_wrong_type_are_told(name):
+    expected = "wrong-shape" if name in arrays() else "wrong-type"
+    verdict = judged(name, lambda *args, **kwargs: np.zeros((2, 7)))
+    assert (verdict.status, verdict.credit, verdict.misconceptions) == ("graded", 0.0, (expected,))
+    verdict = judged(name, lambda *args, **kwargs: "an answer in words")
+    assert (verdict.status, verdict.credit, verdict.misconceptions) == ("graded", 0.0, ("wrong-type",))
+
+
+@pytest.mark.parametrize("name", [name for name in NAMES if name in arrays() + poses()])
+def test_not_a_number_is_told(name):
+    def spoilt(answer):
+        if hasattr(answer, "orientation"):
+            answer.orientation.x = math.nan
+        else:
+            answer = answer * np.nan
+        return answer
+
+    verdict = judged(name, changed(name, spoilt))
+    assert (verdict.status, verdict.credit, verdict.misconceptions) == ("graded", 0.0, ("not-finite",))
+
+
+@every_exercise
+def test_a_stub_is_not_done_and_an_exception_is_an_error(name):
+    def stub(*args, **kwargs):
+        raise NotImplementedError
+
+    def broken(*args, **kwargs):
+        raise KeyError("rotation")
+
+    verdict = judged(name, stub)
+    assert (verdict.status, verdict.credit, verdict.done) == ("error", 0.0, False)
+    verdict = judged(name, broken)
+    assert (verdict.status, verdict.credit, verdict.done, verdict.misconceptions) == ("error", 0.0, True, ())
+    assert "KeyError" in verdict.says
+
+
+# --- right answers in other forms -----------------------------------------------------------------------------------------
+
+
+@every_seed
+@pytest.mark.parametrize("name", poses())
+def test_both_signs_of_a_quaternion_are_right(name, seed):
+    def negated(pose):
+        q = pose.orientation
+        return Pose(pose.position, Quaternion(-q.x, -q.y, -q.z, -q.w))
+
+    assert judged(name, changed(name, negated), seed).credit == 1.0
+    assert judged(name, changed(name, lambda pose: pose), seed).credit == 1.0
+
+
+@pytest.mark.parametrize("name", arrays())
+def test_lists_matrices_and_float32_are_right(name):
+    for form in (np.ndarray.tolist, np.matrix, np.float32):
+        assert judged(name, changed(name, lambda answer: form(np.array(answer)))).credit == 1.0
+
+
+@pytest.mark.parametrize("name", poses())
+def test_float32_and_other_classes_of_pose_are_right(name):
+    def in_float32(pose):
+        p, q = pose.position, pose.orientation
+        return Pose(Point(*np.float32([p.x, p.y, p.z])), Quaternion(*np.float32([q.x, q.y, q.z, q.w])))
+
+    assert judged(name, changed(name, in_float32)).credit == 1.0
+    assert judged(name, changed(name, as_namespace)).credit == 1.0
+
+
+@pytest.mark.parametrize("name", [name for name in NAMES if EXERCISES[name].returns == "truth"])
+def test_truth_in_other_types_is_right(name):
+    for form in (np.bool_, int, float, np.array):
+        assert judged(name, changed(name, form)).credit == 1.0
+
+
+@pytest.mark.parametrize("name", [name for name in NAMES if name not in HARD_TO_SPOIL])
+def test_a_changed_argument_is_noticed(name):
+    def spoiling(*args, **kwargs):
+        answer = EXERCISES[name].reference(*args, **kwargs)
+        if hasattr(args[-1], "position"):
+            args[-1].position.x -= 0.1
+        elif hasattr(args[0], "position"):
+            args[0].position.x -= 0.1
+        else:
+            args[-1][..., 0] += 0.1
+        return answer
+
+    verdict = judged(name, spoiling)
+    assert verdict.credit == 0.0
+    assert verdict.misconceptions == ("input-mutated",)
+
+
+# --- cases and keys -------------------------------------------------------------------------------------------------------
+
+
+@every_exercise
+def test_keys_are_plain_data_and_follow_from_the_seed(name):
+    exercise = EXERCISES[name]
+    public = key(exercise, PUBLIC_SEED)
+    assert json.loads(json.dumps(public, allow_nan=False)) == public
+    assert key(exercise, PUBLIC_SEED) == public
+    hidden = key(exercise, PUBLIC_SEED + 1)
+    assert [case["family"] for case in hidden["cases"]] == [case["family"] for case in public["cases"]]
+    if name != "hand_transform":  # it has no arguments
+        shown = [case["args"] for case in public["cases"]]
+        assert any(case["args"] not in shown for case in hidden["cases"])
+
+
+@every_exercise
+def test_arguments_have_the_promised_types(name):
+    for seed in SEEDS:
+        for case in EXERCISES[name].cases(np.random.default_rng(seed)):
+            for arg in (*case.args, *case.kwargs.values()):
+                if isinstance(arg, np.ndarray):
+                    assert arg.dtype == np.float64
+                    assert arg.shape in ((3,), (4,), (3, 3), (4, 4))
+                    if arg.shape == (4,):
+                        assert abs(np.linalg.norm(arg) - 1.0) < 1e-12
+                elif isinstance(arg, Pose):
+                    q = arg.orientation
+                    assert abs(np.linalg.norm([q.x, q.y, q.z, q.w]) - 1.0) < 1e-8
+                else:
+                    assert isinstance(arg, (int, float)) and name in ("rotation_about_z", "pre_grasp")
+
+
+def test_truths_are_far_from_the_tolerance():
+    for seed in SEEDS:
+        for case in EXERCISES["is_rotation"].cases(np.random.default_rng(seed)):
+            R = case.args[0]
+            off = max(np.abs(R.T @ R - np.eye(3)).max(), abs(np.linalg.det(R) - 1.0))
+            assert off < TOLERANCE / 50 or off > TOLERANCE * 50
+        for case in EXERCISES["same_rotation"].cases(np.random.default_rng(seed)):
+            q1, q2 = case.args
+            off = min(np.abs(q1 - q2).max(), np.abs(q1 + q2).max())
+            assert off < TOLERANCE / 50 or off > TOLERANCE * 1000
+
+
+def test_every_family_of_truths_has_no_single_answer_but_negatives():
+    """So that an answer that is True (or False) nearly always earns next to nothing."""
+    for name in ("is_rotation", "same_rotation"):
+        answers = {}
+        for case in key(EXERCISES[name], PUBLIC_SEED)["cases"]:
+            answers.setdefault(case["family"], set()).add(case["expected"])
+        one_sided = [family for family, seen in answers.items() if len(seen) == 1]
+        assert one_sided == ([] if name == "is_rotation" else ["a quaternion and its negative"])
+
+
+def test_rotations_of_all_kinds_reach_transform_to_pose():
+    for seed in SEEDS:
+        traces, exact = [], set()
+        for case in EXERCISES["transform_to_pose"].cases(np.random.default_rng(seed)):
+            R = case.args[0][:3, :3]
+            assert np.allclose(R.T @ R, np.eye(3), atol=1e-12) and np.linalg.det(R) > 0
+            assert np.abs(case.args[0][:3, 3]).max() > 0.1
+            traces.append(np.trace(R))
+            if np.array_equal(R, R.round()):
+                exact.add(tuple(R.ravel()))
+        assert len(exact) == 24
+        assert sum(trace == -1.0 for trace in traces) >= 9  # exact half turns: six along axes, three about slanted ones
+        assert any(-1.0 < trace < -1.0 + 1e-7 for trace in traces)
+        assert any(3.0 - 1e-4 < trace < 3.0 for trace in traces)
+
+
+def test_half_turns_have_a_trace_of_exactly_minus_one():
+    """However the trace is summed, so that a formula that divides by w = 0 gives one and the same answer."""
+    from itertools import permutations
+
+    from autograder.exercises.cases import half_turn
+
+    for seed in range(200):
+        diagonal = np.diag(half_turn(np.random.default_rng(seed))).round(12)
+        assert all(((a + b) + c) + d == 0.0 for a, b, c, d in permutations((1.0, *diagonal)))
+
+
+def test_chains_and_distances_are_of_all_kinds():
+    for seed in SEEDS:
+        chains = EXERCISES["chain"].cases(np.random.default_rng(seed))
+        assert {len(case.args) for case in chains} == {1, 2, 3, 4, 5, 6}
+        calls = EXERCISES["pre_grasp"].cases(np.random.default_rng(seed))
+        assert {(len(case.args), tuple(case.kwargs)) for case in calls} == {(1, ()), (2, ()), (1, ("distance",))}
+        distances = {case.args[1] for case in calls if len(case.args) == 2}
+        assert {0.25, 0.02} <= distances
+
+
+def test_public_key_is_small():
+    sizes = {name: len(json.dumps(key(EXERCISES[name], PUBLIC_SEED))) for name in NAMES}
+    print(f"public key: {sum(sizes.values()):,} bytes", sizes)
+    assert sum(sizes.values()) < 1_500_000
+
+
+# --- what the lab publishes -----------------------------------------------------------------------------------------------
+
+
+def test_pre_grasp_of_the_lab():
+    object_pose = Pose(Point(0.6, -0.1, 0.7), Quaternion(0, 0, 0.38268343, 0.92387953))
+    answer = EXERCISES["pre_grasp"].reference(object_pose)
+    position, q = answer.position, answer.orientation
+    assert [position.x, position.y, position.z] == pytest.approx([0.529289321708, -0.170710677946, 0.7], abs=1e-10)
+    assert [q.x, q.y, q.z, q.w] == pytest.approx([0.0, 0.0, 0.382683431234, 0.92387953298], abs=1e-8)
+    assert object_pose in [case.args[0] for case in EXERCISES["pre_grasp"].cases(np.random.default_rng(PUBLIC_SEED))]
+
+
+def test_example_1_of_the_lab():
+    c = math.cos(math.pi / 4)
+    example = np.array([[c, -c, 0, 0], [c, c, 0, 0], [0, 0, 1, 0.5], [0, 0, 0, 1]])
+    pose = EXERCISES["transform_to_pose"].reference(example)
+    assert [pose.position.x, pose.position.y, pose.position.z] == [0.0, 0.0, 0.5]
+    q = parts_of("pose", pose)["orientation"]
+    assert agree("orientation", q, np.array([0.0, 0.0, 0.38268343, 0.92387953]))
+    assert np.allclose(EXERCISES["pose_to_transform"].reference(pose), example)
+    point = EXERCISES["transform_point"].reference(example, np.array([1.0, 0.0, 0.0]))
+    assert point == pytest.approx([c, c, 0.5])
+    shown = [case.args[0] for case in EXERCISES["transform_to_pose"].cases(np.random.default_rng(PUBLIC_SEED))]
+    assert any(np.allclose(matrix, example) for matrix in shown)
+
+
+def test_example_2_of_the_lab():
+    """Thumb (z) to the left, middle finger (y) down, index finger (x) still forward, 10 cm closer."""
+    forward, left, up = np.eye(3)
+    hand = EXERCISES["hand_transform"].reference()
+    assert np.array_equal(hand[:3, :3], np.column_stack((forward, -up, left)))
+    assert np.array_equal(hand[:3, 3], -0.1 * forward)
+    assert np.array_equal(hand[3], [0, 0, 0, 1])
+
+
+def test_object_in_gripper_of_the_lab():
+    """The object 1 m in front of the camera; the gripper looks down from 0.2 m above the object."""
+    base_T_camera, base_T_gripper = np.eye(4), np.eye(4)
+    base_T_camera[:3, 3] = 0.1, 0.0, 1.0
+    base_T_gripper[:3, :3] = Rotation.from_euler("y", 90, degrees=True).as_matrix()  # its x axis points down
+    base_T_gripper[:3, 3] = 1.1, 0.0, 1.2
+    answer = EXERCISES["object_in_gripper"].reference(base_T_camera, base_T_gripper, np.array([1.0, 0.0, 0.0]))
+    assert answer == pytest.approx([0.2, 0.0, 0.0], abs=1e-12)
