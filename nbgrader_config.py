@@ -1,11 +1,17 @@
 """nbgrader reads this from the course's root: `nbgrader autograde transforms` and the formgrader grade through our plug-in."""
 
 import sys
+import warnings
 from pathlib import Path
+
+from sqlalchemy.exc import SAWarning
 
 ROOT = str(Path(__file__).resolve().parent)
 if ROOT not in sys.path:
     sys.path.insert(0, ROOT)
+
+# nbgrader was written for an older SQLAlchemy, which warns of the way it adds submissions; the result is right.
+warnings.filterwarnings("ignore", category=SAWarning, module=r"nbgrader\.api")
 
 c = get_config()  # noqa: F821 (nbgrader provides it)
 

@@ -52,7 +52,8 @@ def make(root):
     """Make `.venv` in `root` unless it is whole already; returns its interpreter."""
     folder, requirements = root / ".venv", root / "environment.txt"
     python, stamp = folder / "bin" / "python", folder / "stamp"
-    digest = hashlib.sha256(requirements.read_bytes()).hexdigest()
+    # The folder's own path counts, too: the scripts of an environment that was moved or copied do not work.
+    digest = hashlib.sha256(requirements.read_bytes() + str(folder).encode()).hexdigest()
     if stamp.exists() and stamp.read_text() == digest and python.exists():
         return python
     print("Setting up: installing the packages of environment.txt into .venv (once; a minute or two) …", file=sys.stderr)

@@ -11,6 +11,7 @@ import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from transform_lab import codec
 from transform_lab.verdict import Reply
 
 from . import bubblewrap
@@ -190,8 +191,12 @@ class NotebookProcess:
         except Ended as ended:
             return Reply(ended.status)
         outcome, error = reply.get("outcome"), reply.get("error", "")
-        if outcome not in ("returned", "raised", "not done", "undefined", "timeout") or not isinstance(error, str):
-            self.gone = True
+        try:
+            codec.decode(reply.get("value"))
+            if outcome not in ("returned", "raised", "not done", "undefined", "timeout") or not isinstance(error, str):
+                raise codec.NotPlain("an unknown outcome")
+        except codec.NotPlain:
+            self.gone = True  # no executor of ours writes that
             return Reply("killed")
         return Reply(outcome, reply.get("value"), reply.get("arguments"), error[:300])
 

@@ -1,0 +1,69 @@
+"""What tests share: courses to work in, and the rule that nothing is skipped where CI has to run it."""
+
+import os
+import shutil
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+MADE_AT_RUN_TIME = (".git", ".venv", "submitted", "autograded", "feedback", "reports", "gradebook.db", "__pycache__")
+os.environ["PATH"] = f"{Path(os.sys.prefix, 'bin')}{os.pathsep}{os.environ['PATH']}"  # nbgrader runs alembic by name
+
+
+@pytest.fixture(scope="session")
+def released(tmp_path_factory):
+    """A course in which the assignment was released; not to be changed by tests."""
+    from autograder.course import Course
+    from autograder.release import release
+
+    root = tmp_path_factory.mktemp("course") / "released"
+    shutil.copytree(ROOT, root, ignore=shutil.ignore_patterns(*MADE_AT_RUN_TIME, ".pytest_cache"))
+    course = Course(root)
+    release(course)
+    return course
+
+
+@pytest.fixture
+def course(released, tmp_path):
+    """A released course of the test's own."""
+    from autograder.course import Course
+
+    shutil.copytree(released.root, tmp_path / "course")
+    return Course(tmp_path / "course")
+
+
+@pytest.fixture
+def sandboxed():
+    """For tests that need bubblewrap: elsewhere they are skipped, in CI they fail."""
+    from autograder import sandbox
+
+    problem = sandbox.problem()
+    if problem and os.environ.get("CI") == "true":
+        pytest.fail(problem)
+    if problem:
+        pytest.skip(problem)
+
+
+@pytest.fixture
+def hand_in():
+    """hand_in(course, student, notebooks): put files into submitted/, {notebook name: path, bytes or notebook}."""
+    import nbformat
+
+    def put(course, student, notebooks):
+        folder = course.submitted(student)
+        folder.mkdir(parents=True)
+        for name, content in notebooks.items():
+            if isinstance(content, Path):
+                content = content.read_bytes()
+            elif not isinstance(content, bytes):
+                content = nbformat.writes(content).encode()
+            (folder / f"{name}.ipynb").write_bytes(content)
+
+    return put
+
+
+@pytest.fixture
+def solved(course):
+    """{notebook name: path} of the notebooks with their solutions."""
+    return {path.stem: path for path in sorted(course.source.glob("*.ipynb"))}

@@ -1,0 +1,261 @@
+"""The real sandbox: what a notebook's process can do, and what it cannot reach."""
+
+import os
+import time
+from pathlib import Path
+
+import pytest
+from autograder.sandbox import Ended, Limits, Sandbox
+from conftest import ROOT
+
+PACKAGE = ROOT / "source/transforms/transform_lab"
+QUICK = Limits(cell=1.0, call=0.5, grace=0.5)
+pytestmark = pytest.mark.usefixtures("sandboxed")
+
+
+@pytest.fixture(scope="module")
+def sandbox():
+    with Sandbox(PACKAGE, {"helper.py": b"answer = 42\n", "data/points.csv": b"1,2,3\n"}, QUICK) as box:
+        yield box
+
+
+def run(sandbox, *cells):
+    """The outputs of the last of these cells."""
+    with sandbox.notebook() as notebook:
+        for cell in cells:
+            result = notebook.run_cell(cell)
+    return result.outputs
+
+
+def value(sandbox, *cells):
+    (output,) = run(sandbox, *cells)
+    return output["data"]["text/plain"]
+
+
+def error(sandbox, *cells):
+    (output,) = run(sandbox, *cells)
+    return output["ename"]
+
+
+@pytest.mark.parametrize(
+    "cell, outputs",
+    [
+        ("1 + 1", [("execute_result", "2")]),
+        ("1 + 1;", []),
+        ("print('a'); print('b')", [("stdout", "a\nb\n")]),
+        ("import sys; print('oh', file=sys.stderr)", [("stderr", "oh\n")]),
+        ("import os; _ = os.system('echo from a command')", [("stdout", "from a command\n")]),
+        ("display(3); 4", [("display_data", "3"), ("execute_result", "4")]),
+        ("h = display(1, display_id=True); h.update(2)", [("display_data", "2")]),
+        ("from IPython.display import clear_output\nprint(1); clear_output(); print(2)", [("stdout", "2\n")]),
+        ("import asyncio\nawait asyncio.sleep(0)\n5", [("execute_result", "5")]),
+        ("%%bash\necho shell", [("stdout", "shell\n")]),
+        ("import helper; helper.answer", [("execute_result", "42")]),
+        ("open('data/points.csv').read()", [("execute_result", "'1,2,3\\n'")]),
+        ("input('name?')", [("error", "StdinNotImplementedError")]),
+        ("1 / 0", [("error", "ZeroDivisionError")]),
+        ("def f(:", [("error", "SyntaxError")]),
+    ],
+)
+def test_cells_give_the_outputs_of_jupyter(sandbox, cell, outputs):
+    found = []
+    for output in run(sandbox, cell):
+        if output["output_type"] == "stream":
+            found.append((output["name"], output["text"]))
+        elif output["output_type"] == "error":
+            found.append(("error", output["ename"]))
+        else:
+            found.append((output["output_type"], output["data"]["text/plain"]))
+    assert found == outputs
+
+
+def test_figures_are_shown_at_the_end_of_the_cell(sandbox):
+    with Sandbox(PACKAGE, limits=Limits()) as patient:
+        outputs = run(patient, "import matplotlib.pyplot as plt\nplt.plot([1, 2]);")
+    assert "image/png" in outputs[0]["data"]
+
+
+def test_a_function_is_called_with_plain_data(sandbox):
+    with sandbox.notebook() as notebook:
+        notebook.run_cell("def double(x, times=2):\n    print('noise')\n    return x * times")
+        reply = notebook.call("double", [{"array": [1.0, 2.0], "shape": [2]}], {"times": 3})
+        assert reply.outcome == "returned"
+        assert reply.value == {"array": [3.0, 6.0], "shape": [2]}
+        assert reply.arguments == [[{"array": [1.0, 2.0], "shape": [2]}], {"times": 3}]
+        assert notebook.call("absent", [], {}).outcome == "undefined"
+
+
+def test_a_call_that_changes_its_argument_shows_it(sandbox):
+    with sandbox.notebook() as notebook:
+        notebook.run_cell("def spoil(x):\n    x += 1\n    return x")
+        reply = notebook.call("spoil", [{"array": [1.0], "shape": [1]}], {})
+        assert reply.arguments == [[{"array": [2.0], "shape": [1]}], {}]
+
+
+@pytest.mark.parametrize("body", ["raise ValueError('no')", "raise SystemExit", "raise BaseException('hm')", "exit(1 / 0)"])
+def test_a_call_that_raises_says_so(sandbox, body):
+    with sandbox.notebook() as notebook:
+        notebook.run_cell(f"def f():\n    {body}")
+        assert notebook.call("f", [], {}).outcome == "raised"
+
+
+def test_an_endless_call_is_interrupted_and_the_notebook_goes_on(sandbox):
+    with sandbox.notebook() as notebook:
+        notebook.run_cell("def loop():\n    while True:\n        pass\ndef fine():\n    return 1")
+        assert notebook.call("loop", [], {}).outcome == "timeout"
+        assert not notebook.gone
+        assert notebook.call("fine", [], {}).value == 1
+
+
+def test_an_endless_cell_is_interrupted(sandbox):
+    with sandbox.notebook() as notebook:
+        result = notebook.run_cell("import time\nwhile True:\n    time.sleep(0.01)")
+        assert result.interrupted
+        assert "took too long" in result.outputs[-1]["evalue"]
+        assert notebook.run_cell("7").outputs[0]["data"]["text/plain"] == "7"
+
+
+def test_a_cell_that_heeds_no_interrupt_is_stopped(sandbox):
+    deaf = "import signal, time\nsignal.signal(signal.SIGINT, signal.SIG_IGN)\nwhile True:\n    time.sleep(0.01)"
+    with sandbox.notebook() as notebook:
+        with pytest.raises(Ended) as ended:
+            notebook.run_cell(deaf)
+    assert ended.value.status == "timeout"
+    assert value(sandbox, "'next'") == "'next'"
+
+
+@pytest.mark.parametrize("cell", ["import os; os._exit(0)", "import os; os.abort()", "import os; os.kill(os.getpid(), 9)"])
+def test_a_process_that_ends_itself_costs_nobody_else(sandbox, cell):
+    with sandbox.notebook() as notebook:
+        with pytest.raises(Ended) as ended:
+            notebook.run_cell(cell)
+    assert ended.value.status == "killed"
+    assert value(sandbox, "'next'") == "'next'"
+
+
+def test_a_sandbox_that_was_brought_down_is_started_again(sandbox):
+    with sandbox.notebook() as notebook:
+        with pytest.raises(Ended):
+            notebook.run_cell("import os, time; os.kill(os.getppid(), 9); os.kill(-1, 9); time.sleep(5)")
+    assert value(sandbox, "'next'") == "'next'"
+
+
+def test_exit_ends_the_notebook(sandbox):
+    with sandbox.notebook() as notebook:
+        assert notebook.run_cell("exit()").ended
+
+
+def test_memory_is_limited(sandbox):
+    with Sandbox(PACKAGE, limits=Limits(memory=1_000_000_000)) as small:
+        assert error(small, "x = bytearray(3_000_000_000)") == "MemoryError"
+
+
+def test_forks_are_limited(sandbox):
+    bomb = "import os, time\nn = 0\nwhile True:\n    if os.fork() == 0:\n        time.sleep(60)\n        os._exit(0)\n"
+    with Sandbox(PACKAGE, limits=Limits(cell=5.0, processes=20)) as small:
+        assert error(small, bomb) == "BlockingIOError"
+        assert value(small, "'next'") == "'next'"
+
+
+def test_output_is_limited(sandbox):
+    with Sandbox(PACKAGE, limits=Limits()) as box:
+        outputs = run(box, "for _ in range(100):\n    print('x' * 100_000)")
+    assert sum(len(output["text"]) for output in outputs) < 2_500_000
+    assert "more output than the grader keeps" in outputs[-1]["text"]
+
+
+def test_a_notebook_sees_no_other_notebooks_names(sandbox):
+    with sandbox.notebook() as notebook:
+        notebook.run_cell("secret = 1")
+    assert error(sandbox, "secret") == "NameError"
+
+
+def test_what_a_notebook_leaves_running_ends_with_it(sandbox):
+    daemon = "import os, time\nif os.fork() == 0:\n    os.setsid()\n    time.sleep(60)\n    os._exit(0)"
+    count = "len([p for p in __import__('os').listdir('/proc') if p.isdigit()])"
+    alone = value(sandbox, count)
+    run(sandbox, daemon)
+    assert value(sandbox, count) == alone
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "transform_lab/key.json",
+        str(ROOT / "gradebook.db"),
+        str(ROOT / "autograder"),
+        str(ROOT / "source"),
+        str(ROOT / "README.md"),
+        "/grader/../autograder",
+        "/etc/passwd",
+        "/proc/1/environ",
+        str(Path.home() / ".bashrc"),
+    ],
+)
+def test_what_must_not_be_seen_is_not_there(sandbox, path):
+    cell = f"import os\ntry:\n    open({path!r}).read()\n    print('read')\nexcept OSError as e:\n    print(type(e).__name__)"
+    (output,) = run(sandbox, cell)
+    assert output["text"].strip() in ("FileNotFoundError", "PermissionError")
+
+
+def test_nothing_of_the_environment_is_seen(sandbox, monkeypatch):
+    monkeypatch.setenv("A_SECRET", "of the grader")
+    with Sandbox(PACKAGE, limits=QUICK) as box:
+        assert "A_SECRET" not in value(box, "import os; dict(os.environ)")
+
+
+def test_there_is_no_network(sandbox):
+    cell = "import socket\nsocket.create_connection(('127.0.0.1', 22), timeout=1)"
+    assert error(sandbox, cell) in ("ConnectionRefusedError", "OSError")
+    assert value(sandbox, "import socket; [name for _, name in socket.if_nameindex()]") in ("['lo']", "[]")
+
+
+def test_nobody_in_particular_runs_the_code(sandbox):
+    assert value(sandbox, "import os; os.getuid() != 0 or os.geteuid() != 0") == "True"
+    assert error(sandbox, "open('/usr/bin/new', 'w')") in ("OSError", "PermissionError")
+
+
+def test_no_process_and_no_file_is_left_behind(sandbox):
+    before = set(Path("/tmp").iterdir())
+    with Sandbox(PACKAGE, limits=QUICK) as box:
+        run(box, "open('mine.txt', 'w').write('x'); open('/tmp/mine.txt', 'w').write('x');")
+        process = box.process.pid
+    assert not Path(f"/proc/{process}").exists()
+    assert not Path("/tmp/mine.txt").exists()
+    assert {path for path in set(Path("/tmp").iterdir()) - before if "mine" in path.name} == set()
+
+
+def test_forged_answers_are_passed_over(sandbox):
+    """A frame written to the grader's socket beforehand lacks the next request's nonce."""
+    forge = (
+        "import json, os, stat, struct\n"
+        "frame = json.dumps({'nonce': 'guess', 'outcome': 'returned', 'value': 'forged', 'arguments': [[], {}]}).encode()\n"
+        "for fd in range(3, 40):\n"
+        "    try:\n"
+        "        if stat.S_ISSOCK(os.fstat(fd).st_mode):\n"
+        "            os.write(fd, struct.pack('>I', len(frame)) + frame)\n"
+        "    except OSError:\n"
+        "        continue\n"
+        "def f():\n"
+        "    return 'honest'\n"
+    )
+    with sandbox.notebook() as notebook:
+        notebook.run_cell(forge)
+        assert notebook.call("f", [], {}).value == "honest"
+
+
+def test_a_notebook_has_a_budget_of_time(sandbox):
+    with Sandbox(PACKAGE, limits=Limits(cell=5.0, notebook=1.0, grace=0.5)) as box:
+        with box.notebook() as notebook:
+            start = time.monotonic()
+            assert notebook.run_cell("import time; time.sleep(4)").interrupted
+            with pytest.raises(Ended):
+                notebook.run_cell("1")
+            assert time.monotonic() - start < 4
+
+
+def test_without_bubblewrap_the_same_code_runs_unprotected(sandbox):
+    with Sandbox(PACKAGE, limits=QUICK, isolated=False) as box:
+        assert value(box, "import os; os.getuid()") == str(os.getuid())
+        folder = value(box, "import os; os.getcwd()").strip("'")
+    assert not Path(folder).exists()
