@@ -1,0 +1,133 @@
+"""`check("exercise", function)`: an opinion on a student's function at once, in the notebook.
+
+The cases come from key.json beside this file: arguments, the right answers, and the answers that known misconceptions
+give. It holds numbers only; there is no solution in it to find. The grader uses other cases, in another process.
+"""
+
+import json
+import os
+import sys
+from contextlib import contextmanager
+from functools import cache
+from pathlib import Path
+
+from . import codec, panel
+from .verdict import Reply, examine
+
+KEY = Path(__file__).with_name("key.json")
+
+
+class CheckFailed(AssertionError):
+    """An exercise is not right yet. IPython shows the one line instead of a traceback."""
+
+    def _render_traceback_(self):
+        return [str(self)]
+
+
+def check(name, function):
+    """Call `function` on the public cases of the exercise `name` and show what is right and what is not.
+
+    A right function gets one green line. A stub that is not filled in yet says so calmly. Anything else shows what was
+    expected, what came, and the misconception behind it when exactly one explains every answer; then raises CheckFailed.
+    """
+    if os.environ.get("TRANSFORM_LAB_GRADING"):
+        print(f"{name}: the grader calls this function itself.")
+        return
+    exercise = _exercise(name)
+    if not callable(function):
+        raise CheckFailed(f'check takes the function itself, without parentheses: check("{name}", {name})')
+    verdict = examine(name, exercise, lambda args, kwargs: call(function, args, kwargs))
+    points = round(verdict.credit * exercise["points"], 2), exercise["points"]
+    _show(verdict, points)
+    if verdict.done and not verdict.right:
+        raise CheckFailed(panel.title(verdict))
+
+
+@contextmanager
+def once_done(name):
+    """Run a block that needs the student's function `name`; say one calm line while that is not possible yet."""
+    try:
+        yield
+    except NotImplementedError:
+        print(f"This part appears once {name} is done.")
+    except Exception as error:  # whatever the student's function raised, or what its answer led to
+        print(f"This part appears once {name} is right; now it stops with {one_line(error)}")
+
+
+def call(function, args, kwargs):
+    """The Reply of `function` to plain arguments: fresh objects for each call, and what became of them after it."""
+    args, kwargs = [codec.decode(arg) for arg in args], {key: codec.decode(arg) for key, arg in kwargs.items()}
+    try:
+        value = function(*args, **kwargs)
+    except NotImplementedError:
+        return Reply("not done")
+    except Exception as error:
+        return Reply("raised", error=one_line(error))
+    after = [[codec.encode(arg) for arg in args], {key: codec.encode(arg) for key, arg in kwargs.items()}]
+    return Reply("returned", codec.encode(value), after)
+
+
+def one_line(error):
+    """An exception in one line of bounded length, with the student's line number where there is one."""
+    line, step = "", error.__traceback__
+    while step is not None:
+        if step.tb_frame.f_code.co_filename.startswith(("<ipython-input", "/tmp/ipykernel", "<cell")) or (
+            "ipykernel_" in step.tb_frame.f_code.co_filename
+        ):
+            line = f" (line {step.tb_lineno} of the cell)"
+        step = step.tb_next
+    message = " ".join(str(error).split())
+    return f"{type(error).__name__}: {message}"[:300] + line
+
+
+@cache
+def _key():
+    try:
+        return json.loads(KEY.read_text(encoding="utf-8"))["exercises"]
+    except FileNotFoundError:
+        raise CheckFailed("transform_lab/key.json is missing: fetch the assignment's folder again.") from None
+
+
+def _exercise(name):
+    if name not in _key():
+        raise CheckFailed(f"There is no exercise called {name!r}; there are {', '.join(_key())}.")
+    return _key()[name]
+
+
+def _show(verdict, points):
+    shell = _shell()
+    if shell is None:
+        print(panel.text(verdict, None if verdict.right else points))
+        return
+    from IPython.display import display
+
+    display(
+        {
+            "text/plain": panel.text(verdict, None if verdict.right else points),
+            "text/html": panel.html(verdict),
+        },
+        raw=True,
+    )
+    if not verdict.right:
+        # nbgrader reads the cell's first result as the points it earned; without this line a stub would earn them all.
+        shell.displayhook(_Points(*points))
+
+
+class _Points:
+    """A number of points: the bare number as text, which is how nbgrader takes partial credit."""
+
+    def __init__(self, earned, most):
+        self.earned, self.most = earned, most
+
+    def _repr_mimebundle_(self, include=None, exclude=None):
+        note = f'<span style="color:#555555">{self.earned:g} of {self.most:g} points with these cases</span>'
+        return {"text/plain": f"{self.earned:g}", "text/html": note}
+
+
+def _shell():
+    """IPython's shell where there is one; a plain `python` script has none."""
+    if "IPython" not in sys.modules:
+        return None
+    from IPython import get_ipython
+
+    return get_ipython()

@@ -1,0 +1,174 @@
+"""The ROS 1 messages of the lab: geometry_msgs, std_msgs and visualization_msgs, without ROS.
+
+Field names, default values and constructor forms are those of ROS 1, so code written here runs on a robot when
+only its import lines change::
+
+    Pose()                                              # every field at its default
+    Pose(Point(1, 2, 3), Quaternion(0, 0, 0, 1))        # every field by position, none left out
+    Pose(position=Point(1, 2, 3))                       # some fields by name
+
+As on a robot, a fresh ``Quaternion()`` is 0, 0, 0, 0 (which is no orientation: no turn is 0, 0, 0, 1), a field that
+does not exist cannot be set (AttributeError), and what is assigned to a field is not checked.
+
+Source: the message definitions of ROS Noetic, and the constructor of ``genpy.Message``.
+"""
+
+from dataclasses import MISSING, dataclass, field, fields
+
+__all__ = ["Point", "Vector3", "Quaternion", "Pose", "Header", "PoseStamped", "ColorRGBA", "Marker"]
+
+
+class Message:
+    """What the messages have in common: the constructor and the text form of ROS 1."""
+
+    __slots__ = ()
+
+    def __init__(self, *args, **kwargs):
+        """Make a message from no arguments, from every field by position, or from some fields by name.
+
+        A field that is left out, or given as None, gets its default. Raises TypeError for a wrong number of positional
+        arguments or for a mixture of both forms, AttributeError for a name that is not a field (all as in ROS 1).
+        """
+        kind = type(self).__name__
+        names = [f.name for f in fields(self)]
+        if args and kwargs:
+            raise TypeError(f"{kind} takes its fields by position or by name, not both")
+        if args and len(args) != len(names):
+            raise TypeError(
+                f"Invalid number of arguments, args should be {names} args are {args}: {kind} takes no positional"
+                f" argument or all {len(names)}; to set some fields only, name them, as in {kind}({names[0]}=...)"
+            )
+        for name in kwargs:
+            if name not in names:
+                raise AttributeError(f"{name} is not an attribute of {kind}, whose fields are {', '.join(names)}")
+        given = dict(zip(names, args)) if args else kwargs
+        for f in fields(self):
+            value = given.get(f.name)
+            if value is None:
+                value = f.default if f.default_factory is MISSING else f.default_factory()
+            setattr(self, f.name, value)
+
+    def __str__(self):
+        """The text that ``rostopic echo`` and ``print`` show in ROS 1."""
+        return "\n".join(_lines(self, ""))
+
+
+def _lines(message, indent):
+    """Yield the lines of a message's text form, each starting with `indent`."""
+    for f in fields(message):
+        value = getattr(message, f.name)
+        label = f"{indent}{f.name}: "
+        if isinstance(value, Message):
+            yield label
+            yield from _lines(value, indent + "  ")
+        elif isinstance(value, (list, tuple)) and any(isinstance(item, Message) for item in value):
+            yield label
+            for item in value:
+                yield f"{indent}  - "
+                yield from _lines(item, indent + "    ") if isinstance(item, Message) else [f"{indent}    {item}"]
+        elif isinstance(value, str):
+            yield label + (f'"{value}"' if value else "''")
+        else:
+            yield label + str(value)
+
+
+@dataclass(init=False, slots=True)
+class Point(Message):
+    """geometry_msgs/Point: a position, in metres."""
+
+    x: float = 0.0
+    y: float = 0.0
+    z: float = 0.0
+
+
+@dataclass(init=False, slots=True)
+class Vector3(Message):
+    """geometry_msgs/Vector3: a direction or a size."""
+
+    x: float = 0.0
+    y: float = 0.0
+    z: float = 0.0
+
+
+@dataclass(init=False, slots=True)
+class Quaternion(Message):
+    """geometry_msgs/Quaternion: an orientation, in the order x, y, z, w. A fresh one is 0, 0, 0, 0."""
+
+    x: float = 0.0
+    y: float = 0.0
+    z: float = 0.0
+    w: float = 0.0
+
+
+@dataclass(init=False, slots=True)
+class Pose(Message):
+    """geometry_msgs/Pose: a position and an orientation."""
+
+    position: Point = field(default_factory=Point)
+    orientation: Quaternion = field(default_factory=Quaternion)
+
+
+@dataclass(init=False, slots=True)
+class Header(Message):
+    """std_msgs/Header: the name of the frame in which the data is given. `stamp` is in seconds (there is no clock)."""
+
+    seq: int = 0
+    stamp: float = 0.0
+    frame_id: str = ""
+
+
+@dataclass(init=False, slots=True)
+class PoseStamped(Message):
+    """geometry_msgs/PoseStamped: a pose and, in its header, the frame it is given in."""
+
+    header: Header = field(default_factory=Header)
+    pose: Pose = field(default_factory=Pose)
+
+
+@dataclass(init=False, slots=True)
+class ColorRGBA(Message):
+    """std_msgs/ColorRGBA: red, green, blue and opacity, each from 0 to 1."""
+
+    r: float = 0.0
+    g: float = 0.0
+    b: float = 0.0
+    a: float = 0.0
+
+
+@dataclass(init=False, slots=True)
+class Marker(Message):
+    """visualization_msgs/Marker: a shape to draw. `lifetime` is in seconds, 0 for ever."""
+
+    ARROW = 0
+    CUBE = 1
+    SPHERE = 2
+    CYLINDER = 3
+    LINE_STRIP = 4
+    LINE_LIST = 5
+    CUBE_LIST = 6
+    SPHERE_LIST = 7
+    POINTS = 8
+    TEXT_VIEW_FACING = 9
+    MESH_RESOURCE = 10
+    TRIANGLE_LIST = 11
+
+    ADD = 0
+    MODIFY = 0
+    DELETE = 2
+    DELETEALL = 3
+
+    header: Header = field(default_factory=Header)
+    ns: str = ""
+    id: int = 0
+    type: int = 0
+    action: int = 0
+    pose: Pose = field(default_factory=Pose)
+    scale: Vector3 = field(default_factory=Vector3)
+    color: ColorRGBA = field(default_factory=ColorRGBA)
+    lifetime: float = 0.0
+    frame_locked: bool = False
+    points: list = field(default_factory=list)
+    colors: list = field(default_factory=list)
+    text: str = ""
+    mesh_resource: str = ""
+    mesh_use_embedded_materials: bool = False

@@ -1,0 +1,190 @@
+"""What a scene is made of: solid shapes, points, lines and labels, each in the coordinates of a node.
+
+A node is a place in the scene: its transform is given in the fixed frame, and what hangs on it moves with it. Both the
+interactive page and the still picture are drawn from the same nodes.
+"""
+
+from dataclasses import dataclass, field
+from urllib.parse import quote
+
+import numpy as np
+
+from .messages import Marker
+from .validation import numbers
+
+X_RED, Y_GREEN, Z_BLUE = (0.84, 0.12, 0.12, 1), (0.05, 0.58, 0.15, 1), (0.12, 0.30, 0.92, 1)
+DARK = (0.15, 0.15, 0.2, 1)
+GREY = (0.55, 0.55, 0.6, 1)
+
+
+@dataclass
+class Solid:
+    """A unit solid ("box", "sphere", "cylinder", "cone") placed by `matrix`; colour r, g, b, opacity from 0 to 1.
+
+    The unit solids have diameter or edge 1 and height 1, are centred on the origin, and point along z. `matrix` is 4x4
+    and may scale along the solid's own axes.
+    """
+
+    kind: str
+    matrix: np.ndarray
+    color: tuple
+
+
+@dataclass
+class Cloud:
+    """Square points facing the viewer: `points` Nx3, `colors` Nx4, `size` of the edge in metres."""
+
+    points: np.ndarray
+    colors: np.ndarray
+    size: float
+
+
+@dataclass
+class Label:
+    """Text at a position (3 numbers), or `beside` it: wherever around it no other label stands."""
+
+    text: str
+    position: np.ndarray
+    color: tuple = DARK
+    beside: bool = False
+
+
+# Where a label stands beside its position: to the right (in half widths of the text) and up (in lines), best first.
+# It takes the first place at which it covers least: a mark of the drawing counts 1, a letter 5, another name or the
+# edge of the picture 20.
+BESIDE = [(0, -1.2), (-1.2, -0.8), (1.2, -0.8), (0, -2.2), (-1.3, 0), (1.3, 0), (-1.2, 0.8), (1.2, 0.8), (0, 1.2)]
+BESIDE += [(-1.2, -1.8), (1.2, -1.8), (-1.2, 1.8), (1.2, 1.8), (0, 2.2), (0, -3.2), (0, 3.2), (0, -4.2)]
+
+
+@dataclass
+class Node:
+    """A place in the scene: `transform` is 4x4 in the fixed frame; `path` names it, as in "frames/gripper"."""
+
+    path: str
+    transform: np.ndarray
+    solids: list = field(default_factory=list)
+    clouds: list = field(default_factory=list)
+    labels: list = field(default_factory=list)
+
+
+def path(kind, name):
+    """Return the path of the node for `name`, which may contain slashes, as "base/camera" does."""
+    return f"{kind}/{quote(name, safe='')}"
+
+
+def placed(kind, position, size, color):
+    """Return a Solid at `position`, its axes along those of the node, of `size` (3 numbers or one)."""
+    matrix = np.eye(4)
+    matrix[:3, :3] *= size
+    matrix[:3, 3] = position
+    return Solid(kind, matrix, color)
+
+
+def rod(start, end, diameter, color, kind="cylinder"):
+    """Return a Solid from `start` to `end` (a cone has its tip at `end`), or none if the two coincide."""
+    start, end = np.asarray(start, float), np.asarray(end, float)
+    length = np.linalg.norm(end - start)
+    if length == 0:
+        return []
+    z = (end - start) / length
+    x = np.cross(np.eye(3)[np.abs(z).argmin()], z)  # any direction at right angles to z
+    x /= np.linalg.norm(x)
+    matrix = np.eye(4)
+    matrix[:3, :3] = np.column_stack([x, np.cross(z, x), z]) * [diameter, diameter, length]
+    matrix[:3, 3] = (start + end) / 2
+    return [Solid(kind, matrix, color)]
+
+
+def arrow(tail, tip, color, shaft, head, head_length):
+    """Return the solids of an arrow; `shaft` and `head` are diameters. The head is at most as long as the arrow."""
+    tail, tip = np.asarray(tail, float), np.asarray(tip, float)
+    length = np.linalg.norm(tip - tail)
+    if length == 0:
+        return []
+    neck = tip - (tip - tail) * min(head_length / length, 1)
+    return rod(tail, neck, shaft, color) + rod(neck, tip, head, color, "cone")
+
+
+def frame_node(name, transform, length):
+    """Return a Node with a frame's three axes, the letters at their tips, and its name."""
+    node = Node(path("frames", name), transform)
+    for letter, axis, color in zip("XYZ", np.eye(3), (X_RED, Y_GREEN, Z_BLUE)):
+        node.solids += arrow((0, 0, 0), length * axis, color, 0.05 * length, 0.13 * length, 0.24 * length)
+        node.labels.append(Label(letter, 1.12 * length * axis, color))
+    node.solids.append(placed("sphere", (0, 0, 0), 0.08 * length, DARK))
+    node.labels.append(Label(name, np.zeros(3), beside=True))
+    return node
+
+
+def xyz(message):
+    """Return the x, y, z of a Point or Vector3 as an array."""
+    return numbers([message.x, message.y, message.z], type(message).__name__, lengths=(3,))
+
+
+def rgba(color):
+    """Return a colour (ColorRGBA, or 3 or 4 numbers from 0 to 1) as a tuple r, g, b, opacity."""
+    if hasattr(color, "r"):
+        color = [color.r, color.g, color.b, color.a]
+    values = numbers(color, "a color", lengths=(3, 4))
+    if values.min() < 0 or values.max() > 1:
+        raise ValueError(f"a color is made of numbers from 0 to 1; got {values.tolist()}")
+    return (*values.tolist(), 1.0)[:4]
+
+
+def draw_marker(marker, node):
+    """Hang on `node` what `marker` shows, in the coordinates of the marker's pose. Sizes mean what they mean in RViz.
+
+    Raises ValueError for a size of 0, an odd number of points in a LINE_LIST, and for types that are not drawn.
+    """
+    color, size, kind = rgba(marker.color), xyz(marker.scale), marker.type
+    points = [xyz(point) for point in marker.points]
+    colors = [rgba(c) for c in marker.colors] if len(marker.colors) == len(points) > 0 else [color] * len(points)
+    if kind == Marker.ARROW and points:
+        if len(points) != 2:
+            raise ValueError(f"an ARROW takes two points (tail and tip) or none; got {len(points)}")
+        _need_size(size[:2], "scale.x (shaft diameter) and scale.y (head diameter)")
+        length = np.linalg.norm(points[1] - points[0])
+        node.solids += arrow(*points, color, size[0], size[1], size[2] or 0.23 * length)
+    elif kind == Marker.ARROW:
+        _need_size(size[:2], "scale.x (length) and scale.y (width)")
+        node.solids += arrow((0, 0, 0), (size[0], 0, 0), color, size[1], 2 * size[1], 0.23 * size[0])
+    elif kind in SOLIDS:
+        _need_size(size, "scale.x, scale.y and scale.z")
+        node.solids.append(placed(SOLIDS[kind], (0, 0, 0), size, color))
+    elif kind in SOLID_LISTS:
+        _need_size(size, "scale.x, scale.y and scale.z")
+        node.solids += [placed(SOLID_LISTS[kind], p, size, c) for p, c in zip(points, colors)]
+    elif kind in (Marker.LINE_STRIP, Marker.LINE_LIST):
+        _need_size(size[:1], "scale.x (line width)")
+        if kind == Marker.LINE_LIST and len(points) % 2:
+            raise ValueError(f"a LINE_LIST takes two points for each line; got {len(points)} points")
+        step = 2 if kind == Marker.LINE_LIST else 1
+        for start, end, c in list(zip(points, points[1:], colors))[::step]:
+            node.solids += rod(start, end, size[0], c)
+    elif kind == Marker.POINTS:
+        _need_size(size[:1], "scale.x (point width)")
+        if points:
+            node.clouds.append(Cloud(np.array(points), np.array(colors), size[0]))
+    elif kind == Marker.TEXT_VIEW_FACING:
+        node.labels.append(Label(marker.text, np.zeros(3), color))
+    else:
+        raise ValueError(f"markers of type {marker_type(marker)} are not drawn yet; these are: {', '.join(DRAWN)}")
+
+
+SOLIDS = {Marker.CUBE: "box", Marker.SPHERE: "sphere", Marker.CYLINDER: "cylinder"}
+SOLID_LISTS = {Marker.CUBE_LIST: "box", Marker.SPHERE_LIST: "sphere"}
+TYPE_NAMES = (
+    "ARROW CUBE SPHERE CYLINDER LINE_STRIP LINE_LIST CUBE_LIST SPHERE_LIST POINTS TEXT_VIEW_FACING"
+    " MESH_RESOURCE TRIANGLE_LIST"
+).split()
+DRAWN = TYPE_NAMES[:10]
+
+
+def marker_type(marker):
+    """Return the name of a marker's type, such as "LINE_LIST", or its number if there is none."""
+    return dict(enumerate(TYPE_NAMES)).get(marker.type, str(marker.type))
+
+
+def _need_size(values, names):
+    if not all(values > 0):
+        raise ValueError(f"a marker's {names} must be above 0; got {', '.join(f'{v:g}' for v in values)}")

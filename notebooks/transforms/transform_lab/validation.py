@@ -1,0 +1,78 @@
+"""Turns what a caller passes in into arrays, and says in plain words what is wrong with it."""
+
+import numpy as np
+
+# How far a rotation's entries may be off: 0.707 for cos 45 degrees passes, as it does in ROS.
+TOLERANCE = 1e-3
+
+
+def numbers(value, what, lengths=None):
+    """Return `value` (numbers, lists of numbers, an array) as a new float64 array; `what` names it in errors.
+
+    With `lengths`, the result is a vector of one of these lengths. Raises TypeError if `value` is not made of numbers
+    (a message, say), ValueError for another length, unequal rows, NaN or infinity.
+    """
+    for fields, spelling in [("xyzw", "q"), ("xyz", "p")]:
+        if all(hasattr(value, field) for field in fields):
+            spelled_out = ", ".join(f"{spelling}.{field}" for field in fields)
+            raise TypeError(
+                f"{what} must be a plain list of numbers, not a {type(value).__name__} message: write [{spelled_out}]"
+            )
+    if value is None:
+        raise TypeError(f"{what} must be made of numbers; got None. Does your function return its result?")
+    try:
+        array = np.array(value, dtype=np.float64)
+    except TypeError:
+        raise TypeError(f"{what} must be made of numbers; got {type(value).__name__}") from None
+    except ValueError:
+        raise ValueError(f"{what} must be made of numbers, in rows of equal length; got {value!r}") from None
+    if lengths is not None:
+        if array.size not in lengths or array.size != max(array.shape, default=0):
+            expected = " or ".join(str(n) for n in lengths)
+            raise ValueError(f"{what} must be {expected} numbers; got {shape_text(array)}")
+        array = array.reshape(-1)
+    if not np.isfinite(array).all():
+        raise ValueError(f"{what} contains NaN or infinity: {array.tolist()}")
+    return array
+
+
+def shape_text(array):
+    """Return an array's shape in words: "3x3", "3 numbers", "a single number"."""
+    if array.ndim == 0:
+        return "a single number"
+    return f"{array.size} numbers" if array.ndim == 1 else "x".join(str(n) for n in array.shape)
+
+
+def rigid_transform(matrix, what):
+    """Return `matrix` as a new 4x4 float64 array, a homogeneous transform; `what` starts the error messages.
+
+    Raises ValueError naming the property that fails: the shape, finite entries, the bottom row 0, 0, 0, 1, columns of
+    length 1 at right angles (R.T @ R = I), or the determinant (+1; -1 is a reflection).
+    """
+    T = numbers(matrix, what)
+    if T.shape != (4, 4):
+        advice = " Put the rotation into the upper left of np.eye(4)." if T.shape == (3, 3) else ""
+        raise ValueError(f"{what} must be a 4x4 homogeneous transform as in ROS; got {shape_text(T)}.{advice}")
+    if not np.allclose(T[3], [0, 0, 0, 1], rtol=0, atol=TOLERANCE):
+        advice = " The translation belongs into the last column, T[:3, 3]." if T[3, :3].any() else ""
+        raise ValueError(f"{what} must have the bottom row 0, 0, 0, 1; it is {row_text(T[3])}.{advice}")
+    R = T[:3, :3]
+    error = np.abs(R.T @ R - np.eye(3)).max()
+    if error > TOLERANCE:
+        lengths = np.linalg.norm(R, axis=0)
+        raise ValueError(
+            f"{what} has no rotation matrix in its upper left: R.T @ R differs from the identity by up to {error:.3g}."
+            f" The columns must have length 1 and be at right angles; their lengths are {row_text(lengths)}."
+        )
+    determinant = np.linalg.det(R)
+    if determinant < 0:
+        raise ValueError(
+            f"{what} has a reflection in its upper left, not a rotation: the determinant is {determinant:.3g} and must"
+            " be +1. The axes are left-handed: one of them points the wrong way, or two are swapped."
+        )
+    return T
+
+
+def row_text(values):
+    """Return numbers as text, "0, 0, 0.5, 1"."""
+    return ", ".join(f"{round(float(value), 6) + 0.0:.4g}" for value in values)  # + 0.0 turns -0 into 0
