@@ -1,12 +1,14 @@
-"""The exercises prove themselves: the reference is right, every misconception is caught and named, stubs earn nothing."""
+"""The exercises prove themselves: the reference is right, misconceptions are caught and named, stubs earn nothing."""
 
 import json
 import math
+from itertools import permutations
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from autograder.exercises import EXERCISES, PUBLIC_SEED, key
+from autograder.exercises.cases import either_sign, half_turn
 from scipy.spatial.transform import Rotation
 from transform_lab import Point, Pose, Quaternion, tft
 from transform_lab.check import call
@@ -62,7 +64,7 @@ def test_reference_is_right(name, seed):
     assert verdict.misconceptions == ()
 
 
-# --- right solutions written in another way ---------------------------------------------------------------------------
+# --- right solutions written in another way -------------------------------------------------------------------------
 
 
 def shepperd(matrix):
@@ -182,7 +184,7 @@ def test_right_solutions_in_other_ways_are_right(name, solution, seed):
     assert judged(name, solution, seed).credit == 1.0
 
 
-# --- misconceptions -----------------------------------------------------------------------------------------------------
+# --- misconceptions -------------------------------------------------------------------------------------------------
 
 
 @every_seed
@@ -229,7 +231,7 @@ def test_partial_credit(name, misconception, least, most):
         assert least <= judged(name, wrong).credit <= most
 
 
-# --- answers that are none ------------------------------------------------------------------------------------------------
+# --- answers that are none ------------------------------------------------------------------------------------------
 
 
 def upright():
@@ -300,7 +302,7 @@ def test_a_stub_is_not_done_and_an_exception_is_an_error(name):
     assert "KeyError" in verdict.says
 
 
-# --- right answers in other forms -----------------------------------------------------------------------------------------
+# --- right answers in other forms -----------------------------------------------------------------------------------
 
 
 @every_seed
@@ -353,7 +355,7 @@ def test_a_changed_argument_is_noticed(name):
     assert verdict.misconceptions == ("input-mutated",)
 
 
-# --- cases and keys -------------------------------------------------------------------------------------------------------
+# --- cases and keys -------------------------------------------------------------------------------------------------
 
 
 @every_exercise
@@ -419,20 +421,27 @@ def test_rotations_of_all_kinds_reach_transform_to_pose():
             if np.array_equal(R, R.round()):
                 exact.add(tuple(R.ravel()))
         assert len(exact) == 24
-        assert sum(trace == -1.0 for trace in traces) >= 9  # exact half turns: six along axes, three about slanted ones
-        assert any(-1.0 < trace < -1.0 + 1e-7 for trace in traces)
+        half_turns = sum(abs(trace + 1.0) < 1e-12 for trace in traces)
+        assert half_turns == 9 + 3  # nine of the 24, and three about slanted axes
+        assert any(-1.0 + 1e-9 < trace < -1.0 + 1e-7 for trace in traces)  # almost
         assert any(3.0 - 1e-4 < trace < 3.0 for trace in traces)
 
 
 def test_half_turns_have_a_trace_of_exactly_minus_one():
     """However the trace is summed, so that a formula that divides by w = 0 gives one and the same answer."""
-    from itertools import permutations
-
-    from autograder.exercises.cases import half_turn
-
     for seed in range(200):
         diagonal = np.diag(half_turn(np.random.default_rng(seed))).round(12)
         assert all(((a + b) + c) + d == 0.0 for a, b, c, d in permutations((1.0, *diagonal)))
+
+
+def test_quaternions_of_either_sign_are_arguments():
+    pose = Pose(Point(1, 2, 3), Quaternion(0.5, 0.5, -0.5, 0.5))
+    negated = Pose(Point(1, 2, 3), Quaternion(-0.5, -0.5, 0.5, -0.5))
+    assert either_sign([pose, pose, pose]) == [pose, negated, pose]
+    for name in ("pose_to_transform", "transform_pose", "pre_grasp", "waypoint"):
+        cases = EXERCISES[name].cases(np.random.default_rng(PUBLIC_SEED))
+        w = [arg.orientation.w for case in cases for arg in case.args if isinstance(arg, Pose)]
+        assert sum(number < -0.1 for number in w) >= 5 and sum(number > 0.1 for number in w) >= 5
 
 
 def test_chains_and_distances_are_of_all_kinds():
@@ -451,7 +460,7 @@ def test_public_key_is_small():
     assert sum(sizes.values()) < 1_500_000
 
 
-# --- what the lab publishes -----------------------------------------------------------------------------------------------
+# --- what the lab publishes -----------------------------------------------------------------------------------------
 
 
 def test_pre_grasp_of_the_lab():
