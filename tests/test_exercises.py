@@ -68,7 +68,7 @@ def test_reference_is_right(name, seed):
 
 
 def shepperd(matrix):
-    """The largest component from the diagonal, the others from it: S. W. Shepperd, J. Guidance and Control 1(3), 1978."""
+    """The largest component from the diagonal, then the others: S. W. Shepperd, J. Guidance and Control 1(3), 1978."""
     R = np.asarray(matrix)[:3, :3]
     numbers = [R[0, 0], R[1, 1], R[2, 2], np.trace(R)]
     i = int(np.argmax(numbers))
@@ -216,7 +216,7 @@ def test_misconceptions_are_written_for_students(name):
 
 @pytest.mark.parametrize("name, misconception, least, most", [
     ("transform_to_pose", "position-missing", 0.5, 0.5),
-    ("transform_to_pose", "trace-formula-only", 0.6, 0.9),
+    ("transform_to_pose", "trace-formula-only", 0.7, 0.95),
     ("make_transform", "position-missing", 0.4, 0.4),
     ("invert_transform", "inverse-missing", 0.0, 0.0),
     ("invert_transform", "inverse-parts-separately", 0.3, 0.3),
@@ -423,7 +423,7 @@ def test_rotations_of_all_kinds_reach_transform_to_pose():
         assert len(exact) == 24
         half_turns = sum(abs(trace + 1.0) < 1e-12 for trace in traces)
         assert half_turns == 9 + 3  # nine of the 24, and three about slanted axes
-        assert any(-1.0 + 1e-9 < trace < -1.0 + 1e-7 for trace in traces)  # almost
+        assert any(-1.0 + 1e-7 < trace < -1.0 + 1e-5 for trace in traces)  # almost half turns
         assert any(3.0 - 1e-4 < trace < 3.0 for trace in traces)
 
 

@@ -43,7 +43,11 @@ def half_turn(rng):
 
 
 def near_half_turn(rng, short):
-    """A turn about a slanted axis that is `short` (radians) of a half turn."""
+    """A turn about a slanted axis that is `short` (radians) of a half turn.
+
+    Keep `short` at 1e-3 or more: below, the 12 decimals of the key blur a trace so near to -1, and it becomes a matter
+    of luck whether a formula that divides by w is still right.
+    """
     return rotation_about(slanted_axis(rng), np.pi - short)
 
 
