@@ -65,8 +65,10 @@ class Student:
         tree = ast.parse(self._text)
         self.about = ast.get_docstring(tree)
         self.definitions = {name: statement for statement in tree.body[1:] for name in _bound(statement)}
-        literals = {name: ast.literal_eval(self.definitions.pop(name).value) for name in LITERALS if name in self.definitions}
-        self.answers, self.extra_cells, self.missing, self.broken = ({**LITERALS, **literals}[name] for name in LITERALS)
+        given = {name: self.definitions.pop(name).value for name in LITERALS if name in self.definitions}
+        literals = {**LITERALS, **{name: ast.literal_eval(value) for name, value in given.items()}}
+        self.answers, self.extra_cells = literals["ANSWERS"], literals["EXTRA_CELLS"]
+        self.missing, self.broken = literals["MISSING"], literals["BROKEN"]
 
     def hand_in(self, released):
         """The text of the student's file, made from the course.Released notebook."""
@@ -89,7 +91,7 @@ class Student:
         return text[: len(text) // 2] if released.name in self.broken else text
 
     def code(self, name, known):
-        """The source of `name`'s definition, after that of all it uses; names in `known`, which grows, are there already."""
+        """The sources of what `name` uses and of itself, in this order, but for what is `known`; adds to `known`."""
         if name in known or name not in self.definitions:
             return []
         statement = self.definitions[name]

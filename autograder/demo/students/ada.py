@@ -6,26 +6,26 @@ from transform_lab import Point, Pose, Quaternion, tft
 ANSWERS = {
     "question-pose-or-transform": """
 A pose is a position and an orientation, a transform is a translation and a rotation, and these are the same seven
-facts: the position is the origin of the cup's frame and the quaternion says where its axes point. I can compute one from
-the other in both directions.
+facts: the position is the origin of the cup's frame and the quaternion says where its axes point. I can compute one
+from the other in both directions.
 
 What my colleague forgot is in which frame the numbers are. ROS puts the name into the header of a PoseStamped, in
 frame_id. If they are the camera's numbers and I use them in base_link, then the arm goes somewhere else entirely,
 perhaps through the table, and no program will complain about it.
 """,
     "question-why-not-transpose": """
-The columns of R have length 1 and are at right angles, so R.T @ R is the identity and the transpose undoes R. The 4x4
-matrix has a place in its last column, which is not an axis. If I transpose, the place goes to the bottom row, where 0 0 0 1
-must be.
+The columns of R have length 1 and are at right angles, so R.T @ R is the identity and the transpose undoes R. The
+4x4 matrix has a place in its last column, which is not an axis. If I transpose, the place goes to the bottom row,
+where 0 0 0 1 must be.
 
-The second friend has the right vector but along the wrong axes. It must be -R.T @ p. If B is 2 m in front of me
-and looks to the left, then I am 2 m to B's LEFT (y = 2). Minus p would claim that I am behind B.
+The second friend has the right vector but along the wrong axes. It must be -R.T @ p. If B is 2 m in front of me and
+looks to the left, then I am 2 m to B's LEFT (y = 2). Minus p would claim that I am behind B.
 """,
     "question-which-frame": """
 The z axis of the bottle is level, so 15 cm along z of the bottle is 15 cm sideways over the table. It works for all
-objects that stand upright, because their z is the same as the base's z. To lift anything I would keep the orientation
-and add 0.15 to position.z in the base frame. The approach belongs to the object (it depends on how it lies), so there the
-object's frame is right. "Up" belongs to the world, so there the base frame is right.
+objects that stand upright, because their z is the same as the base's z. To lift anything I would keep the
+orientation and add 0.15 to position.z in the base frame. The approach belongs to the object (it depends on how it
+lies), so there the object's frame is right. "Up" belongs to the world, so there the base frame is right.
 """,
 }
 

@@ -6,17 +6,17 @@ from transform_lab import Point, Pose, Quaternion, tft
 ANSWERS = {
     "question-pose-or-transform": """
 Both have a position and an orientation so you can convert between them, e.g. with tft. You still need to know the
-frame_id from the PoseStamped header, because a pose in camera_link is not the same as a pose in base_link and the robot
-would grasp at the wrong place.
+frame_id from the PoseStamped header, because a pose in camera_link is not the same as a pose in base_link and the
+robot would grasp at the wrong place.
 """,
     "question-why-not-transpose": """
 R is orthonormal so R.T R = I and the transpose is the inverse. A 4x4 transform is not orthonormal because of the
-translation. The second one has to rotate the translation as well, -R.T p, because it has to be expressed in frame B.
-For example a frame rotated by 90 degrees about z at (1,0,0) has the inverse translation (0,1,0).
+translation. The second one has to rotate the translation as well, -R.T p, because it has to be expressed in frame
+B. For example a frame rotated by 90 degrees about z at (1,0,0) has the inverse translation (0,1,0).
 """,
     "question-which-frame": """
-It should lift the bottle by 15 cm, because z is up. For other objects it works the same way. I would use the base frame
-for both since the robot knows where its base is.
+It should lift the bottle by 15 cm, because z is up. For other objects it works the same way. I would use the base
+frame for both since the robot knows where its base is.
 """,
 }
 

@@ -11,15 +11,15 @@ story though, "in terms of what?" is missing, and that is `header.frame_id` in P
 numbers still look fine, but the arm reaches somewhere else, in the worst case through a person.
 """,
     "question-why-not-transpose": """
-Rotations: the rows of the transpose are the columns of R, so every entry of R^T R is a dot product of two axes. These
-are 1 or 0. For the 4x4 matrix the dot product of the last column with itself is |p|^2 + 1, which is not 1 unless p = 0.
-The second friend's vector -p is the right arrow, told in A's axes. It has to be told in B's axes: -R^T p. With B at (1, 0, 0)
-turned by 180 degrees about z, A is at (+1, 0, 0) in B and not at (-1, 0, 0).
+Rotations: the rows of the transpose are the columns of R, so every entry of R^T R is a dot product of two axes.
+These are 1 or 0. For the 4x4 matrix the dot product of the last column with itself is |p|^2 + 1, which is not 1
+unless p = 0. The second friend's vector -p is the right arrow, told in A's axes. It has to be told in B's axes:
+-R^T p. With B at (1, 0, 0) turned by 180 degrees about z, A is at (+1, 0, 0) in B and not at (-1, 0, 0).
 """,
     "question-which-frame": """
-It drags the bottle 15 cm along the table towards its cap. It would have worked for any object that stands. I would add
-0.15 to z of the pose in the base frame and leave the orientation. Approach: object frame, because the fingers must fit
-the object. Lift: base frame, because gravity does not care how the object lies.
+It drags the bottle 15 cm along the table towards its cap. It would have worked for any object that stands. I would
+add 0.15 to z of the pose in the base frame and leave the orientation. Approach: object frame, because the fingers
+must fit the object. Lift: base frame, because gravity does not care how the object lies.
 """,
 }
 

@@ -12,14 +12,14 @@ reference frame (header.frame_id of the stamped message), otherwise I would move
 transform between the frames, which can be a crash.
 """,
     "question-why-not-transpose": """
-Friend 1: an orthogonal matrix is one whose inverse is its transpose, and rotations are orthogonal. Homogeneous transforms
-with a translation are not, their transpose has not even the bottom row 0 0 0 1.
-Friend 2: (R p)^-1 = (R^T, -R^T p). What is missing is the R^T in front of p.
+Friend 1: an orthogonal matrix is one whose inverse is its transpose, and rotations are orthogonal. Homogeneous
+transforms with a translation are not, their transpose has not even the bottom row 0 0 0 1. Friend 2: (R p)^-1 =
+(R^T, -R^T p). What is missing is the R^T in front of p.
 """,
     "question-which-frame": """
 Fifteen centimetres sideways. It works if the z axis of the object is vertical. Lift = translation(0, 0, 0.15) *
-base_T_object, multiplied from the left because it is in the base frame; approach = base_T_object * translation(-0.1, 0, 0),
-from the right because it is in the object frame.
+base_T_object, multiplied from the left because it is in the base frame; approach = base_T_object *
+translation(-0.1, 0, 0), from the right because it is in the object frame.
 """,
 }
 
@@ -69,7 +69,8 @@ def transform_to_pose(matrix):
 
 def pose_to_transform(pose):
     p, q = pose.position, pose.orientation
-    return tft.concatenate_matrices(tft.translation_matrix((p.x, p.y, p.z)), tft.quaternion_matrix((q.x, q.y, q.z, q.w)))
+    translation = tft.translation_matrix((p.x, p.y, p.z))
+    return tft.concatenate_matrices(translation, tft.quaternion_matrix((q.x, q.y, q.z, q.w)))
 
 
 def transform_point(a_T_b, p_in_b):

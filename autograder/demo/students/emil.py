@@ -5,11 +5,12 @@ from transform_lab import Point, Pose, Quaternion, tft
 
 ANSWERS = {
     "question-pose-or-transform": """
-They are the same thing in two formats. I need to know the frame_id in the header. If it is wrong the robot misses the cup.
+They are the same thing in two formats. I need to know the frame_id in the header. If it is wrong the robot misses
+the cup.
 """,
     "question-why-not-transpose": """
-The transpose of an orthogonal matrix is its inverse, because the lengths are 1. For the 4x4 it works as well as long
-as the rotation is correct. The second one should not put the minus.
+The transpose of an orthogonal matrix is its inverse, because the lengths are 1. For the 4x4 it works as well as
+long as the rotation is correct. The second one should not put the minus.
 """,
     "question-which-frame": """
 The gripper moves along the bottle's z axis, which is horizontal now. It works only if the bottle stands. The lift

@@ -7,17 +7,19 @@ from transform_lab import Point, Pose, Quaternion, tft
 
 ANSWERS = {
     "question-pose-or-transform": """
-A pose can be read as the transform from the frame of the cup to some reference frame. Which one, is not in the Pose but
-in the header (frame_id) of the PoseStamped. Assuming the wrong one sends the gripper to the wrong place without any error.
+A pose can be read as the transform from the frame of the cup to some reference frame. Which one, is not in the Pose
+but in the header (frame_id) of the PoseStamped. Assuming the wrong one sends the gripper to the wrong place without
+any error.
 """,
     "question-why-not-transpose": """
-For R: its columns are orthonormal so R^T R = I. The last column of T has not unit length, and after transposing, the
-bottom row is not 0 0 0 1 any more. The second friend must multiply with R^T: t' = -R^T t. Example: 90 degrees about z
-and t = (1, 0, 0) gives t' = (0, 1, 0) and not (-1, 0, 0).
+For R: its columns are orthonormal so R^T R = I. The last column of T has not unit length, and after transposing,
+the bottom row is not 0 0 0 1 any more. The second friend must multiply with R^T: t' = -R^T t. Example: 90 degrees
+about z and t = (1, 0, 0) gives t' = (0, 1, 0) and not (-1, 0, 0).
 """,
     "question-which-frame": """
-Along the z axis of the bottle, so parallel to the table. It works for standing objects. Up is in the base frame,
-so take the grasp pose and add 0.15 to its z. The approach should be in the object frame since it depends on the object.
+Along the z axis of the bottle, so parallel to the table. It works for standing objects. Up is in the base frame, so
+take the grasp pose and add 0.15 to its z. The approach should be in the object frame since it depends on the
+object.
 """,
 }
 

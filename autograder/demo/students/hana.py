@@ -5,9 +5,9 @@ from transform_lab import Point, Pose, Quaternion, tft
 
 ANSWERS = {
     "question-pose-or-transform": """
-The pose of the cup describes the cup's frame in another frame, and this is what a transform does as well. The missing
-thing is the other frame. It is in header.frame_id. If I guess base_link and it was camera_link then the gripper will go
-to a point that has nothing to do with the cup.
+The pose of the cup describes the cup's frame in another frame, and this is what a transform does as well. The
+missing thing is the other frame. It is in header.frame_id. If I guess base_link and it was camera_link then the
+gripper will go to a point that has nothing to do with the cup.
 """,
     "question-why-not-transpose": """
 Transposing a rotation exchanges rows and columns, which turns it the other way. It does not work for the 4x4 matrix

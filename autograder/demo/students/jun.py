@@ -6,8 +6,8 @@ from transform_lab import Point, Pose, Quaternion, tft
 MISSING = ["5_pre_grasp"]
 ANSWERS = {
     "question-pose-or-transform": """
-A pose gives position and orientation, so you can build the transform from it. You also need to know in which frame the
-pose is, this is the frame_id in the header. If you take the wrong frame the gripper could hit the table.
+A pose gives position and orientation, so you can build the transform from it. You also need to know in which frame
+the pose is, this is the frame_id in the header. If you take the wrong frame the gripper could hit the table.
 """,
     "question-why-not-transpose": """
 The rotation's columns are perpendicular unit vectors, so the transpose is the inverse. The transform's translation

@@ -6,12 +6,12 @@ from transform_lab import Point, Pose, Quaternion, tft
 BROKEN = ["3_chaining"]
 ANSWERS = {
     "question-pose-or-transform": """
-A pose has a position (x, y, z) and an orientation (quaternion). A transform has R and p. So it's the same. But a pose
-needs a frame to be useful, ROS has PoseStamped with the header for that.
+A pose has a position (x, y, z) and an orientation (quaternion). A transform has R and p. So it's the same. But a
+pose needs a frame to be useful, ROS has PoseStamped with the header for that.
 """,
     "question-which-frame": """
-The bottle's z axis is horizontal so the gripper moves horizontally. It works if z is up. To lift any object I'd use z of
-base_link. Approach in object frame, lift in base frame.
+The bottle's z axis is horizontal so the gripper moves horizontally. It works if z is up. To lift any object I'd use
+z of base_link. Approach in object frame, lift in base frame.
 """,
 }
 

@@ -6,13 +6,13 @@ from transform_lab import Point, Pose, Quaternion, tft
 ANSWERS = {
     "question-pose-or-transform": """
 You can compute the 4x4 matrix from the pose and the pose from the matrix, so in this sense they are the same. The
-colleague does not say in which frame the cup is at (1, 0, 0.5). In ROS this would be in header.frame_id. If it is the
-camera's frame and I think it is the base's, I grasp into thin air or hit something.
+colleague does not say in which frame the cup is at (1, 0, 0.5). In ROS this would be in header.frame_id. If it is
+the camera's frame and I think it is the base's, I grasp into thin air or hit something.
 """,
     "question-why-not-transpose": """
 In R^T R each entry is a dot product of two columns, 1 on the diagonal and 0 elsewhere, so it is the identity. The
-fourth column of T is a position, so this argument does not hold. The other friend: the translation of the inverse is
-A's origin in B's axes, so -p must be rotated by R^T. For B at (1, 0, 0), facing left, it is (0, 1, 0).
+fourth column of T is a position, so this argument does not hold. The other friend: the translation of the inverse
+is A's origin in B's axes, so -p must be rotated by R^T. For B at (1, 0, 0), facing left, it is (0, 1, 0).
 """,
     "question-which-frame": """
 It moves the bottle sideways. The z axis of the object has to be vertical for this program to work. Lifting is about

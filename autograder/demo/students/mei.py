@@ -5,13 +5,14 @@ from transform_lab import Point, Pose, Quaternion, tft
 
 ANSWERS = {
     "question-pose-or-transform": """
-A transform and a pose have the same information. To grasp I need to know the reference frame of the pose, which is in
-the header of PoseStamped as frame_id. If I get it wrong the robot moves to a wrong position and may break something.
+A transform and a pose have the same information. To grasp I need to know the reference frame of the pose, which is
+in the header of PoseStamped as frame_id. If I get it wrong the robot moves to a wrong position and may break
+something.
 """,
     "question-why-not-transpose": """
-Because for a rotation the columns are orthonormal: R.T @ R is I. With a translation the transpose has numbers in the
-bottom row. The translation must be turned too, it should be -R.T @ p. Example: rotate by 180 degrees about z and move
-1 m forward, then the inverse moves 1 m forward as well, and not back.
+Because for a rotation the columns are orthonormal: R.T @ R is I. With a translation the transpose has numbers in
+the bottom row. The translation must be turned too, it should be -R.T @ p. Example: rotate by 180 degrees about z
+and move 1 m forward, then the inverse moves 1 m forward as well, and not back.
 """,
     "question-which-frame": """
 Sideways instead of up. It works for objects which stand upright. I would lift in the base frame and approach in the

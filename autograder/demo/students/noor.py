@@ -30,9 +30,9 @@ They hold the same, the position is the last column and the quaternion is the ro
 in header.frame_id. If I assume the wrong frame, the gripper goes to a wrong place.
 """,
     "question-why-not-transpose": """
-I printed it: R.T @ R is always the identity, because the columns have length 1 and are perpendicular. T.T @ T is not the
-identity, there is p in the last row. And for the second friend I printed it too: T_inv @ T has the identity in the
-rotation but not in the translation. It must be -R.T @ p.
+I printed it: R.T @ R is always the identity, because the columns have length 1 and are perpendicular. T.T @ T is
+not the identity, there is p in the last row. And for the second friend I printed it too: T_inv @ T has the identity
+in the rotation but not in the translation. It must be -R.T @ p.
 """,
     "question-which-frame": """
 It moves in the direction of the bottle's z axis, so to the side. It would have worked if the bottle was standing.

@@ -11,13 +11,13 @@ EXTRA_CELLS = {"chain": 'print("chain of one:", chain(np.eye(4)), file=sys.stder
 ANSWERS = {
     "question-pose-or-transform": """
 A pose is a transform from the object's frame to the frame it is given in. The name of this frame is the frame_id in
-the header of the PoseStamped, and without it the numbers mean nothing. The robot would reach for the right numbers in
-the wrong frame.
+the header of the PoseStamped, and without it the numbers mean nothing. The robot would reach for the right numbers
+in the wrong frame.
 """,
     "question-why-not-transpose": """
 Orthonormal columns: R^T R = I. The homogeneous matrix is not orthonormal since its last column is a position. For
-the second friend: undo the translation first, then the rotation, so p -> R^T (p - t) = R^T p - R^T t. They forgot the R^T in front of
-t. In my example (t = (1, 0, 0), 90 degrees about z) it is (0, 1, 0).
+the second friend: undo the translation first, then the rotation, so p -> R^T (p - t) = R^T p - R^T t. They forgot
+the R^T in front of t. In my example (t = (1, 0, 0), 90 degrees about z) it is (0, 1, 0).
 """,
     "question-which-frame": """
 15 cm along the table. Works for upright objects. Lift in the base frame (z of the position + 0.15), because up is a

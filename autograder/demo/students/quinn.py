@@ -6,8 +6,8 @@ from transform_lab import Point, Pose, Quaternion, tft
 ANSWERS = {
     "question-pose-or-transform": """
 A pose describes where something is and how it is turned, a transform describes where a frame is and how it is
-turned. So each pose is a transform, if we know the frame it is relative to. This is the frame_id in the header. If I
-assumed base_link for a pose from the camera, the arm would go to a wrong place.
+turned. So each pose is a transform, if we know the frame it is relative to. This is the frame_id in the header. If
+I assumed base_link for a pose from the camera, the arm would go to a wrong place.
 """,
     "question-why-not-transpose": """
 Each column of R has length 1 and is perpendicular to the others, therefore R^T R = I. A transform has also the
@@ -15,8 +15,8 @@ translation and that's not perpendicular to anything. The second friend has to e
 instead of A, so multiply by R^T.
 """,
     "question-which-frame": """
-The gripper moves horizontally, 15 cm towards the cap. It works for objects that stand upright. One should use the base
-frame for the lift. For the approach the object frame is right.
+The gripper moves horizontally, 15 cm towards the cap. It works for objects that stand upright. One should use the
+base frame for the lift. For the approach the object frame is right.
 """,
 }
 
