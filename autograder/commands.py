@@ -173,8 +173,8 @@ def _grade(here, students, options, protected):
                     if problem:
                         progress.console.print(f"{student}: no feedback: {problem}", markup=False)
         recorded = writer.students()
-    found, problems = report.write(here, [student for student in here.students() if student in recorded])
-    _show_class(found, students, report.look(found, problems))
+    found = report.write(here, [student for student in here.students() if student in recorded])
+    _show_class(found, students)
     console.print(f"{len(fresh)} graded (hidden cases drawn from seed {seed}), {len(students) - len(fresh) - len(failed)} unchanged.")
     for what, where in (
         ("class report", here.reports / "index.html"),
@@ -193,17 +193,19 @@ def _progress():
     return Progress(*columns, console=console)
 
 
-def _show_class(found, students, look):
+def _show_class(found, students):
     table = Table("student", "points", "misconceptions and what needs a look", box=None, pad_edge=False)
     for student in students:
         rows = found.get(student)
         if rows is None:
             continue
         points = f"{sum(row.score for row in rows):g} of {sum(row.max_score for row in rows):g}"
-        said = [f"{row.exercise}: {row.misconception}" for row in rows if row.misconception]
-        said += [f"{row.exercise}: {row.status}" for row in rows if row.status not in ("graded", "missing", "unreadable")]
-        said += sorted({f"{row.notebook}: {row.status}" for row in rows if row.status in ("missing", "unreadable")})
-        table.add_row(student, points, ", ".join(said))
+        said = {}
+        for row in rows:
+            what = row.misconception or row.status
+            if what != "graded":
+                said.setdefault(what, []).append(row.exercise)
+        table.add_row(student, points, "; ".join(f"{what} ({', '.join(names)})" for what, names in said.items()))
     console.print(table)
 
 
@@ -214,8 +216,7 @@ def report(options):
     here = course()
     with Writer(here) as writer:
         students = sorted(writer.students())
-    found, problems = report.write(here, students)
-    _show_class(found, students, report.look(found, problems))
+    _show_class(report.write(here, students), students)
     console.print(f"{here.reports.relative_to(here.root)}/index.html and verdicts.csv are written.")
     return 0
 

@@ -11,6 +11,7 @@ from dataclasses import astuple, fields
 from datetime import datetime, timezone
 
 import jinja2
+from transform_lab.verdict import GENERAL
 
 from .course import ASSIGNMENT
 from .exercises import EXERCISES
@@ -35,7 +36,7 @@ def _rows(record, released):
 
 
 def write(course, students):
-    """Write reports/transforms/verdicts.csv and index.html; returns the rows and problems they were made from."""
+    """Write reports/transforms/verdicts.csv and index.html; returns {student: [Row]} they were made from."""
     found, problems = verdicts(course, students)
     course.reports.mkdir(parents=True, exist_ok=True)
     table = io.StringIO()
@@ -53,7 +54,7 @@ def write(course, students):
         look=look(found, problems),
     )
     _replace(course.reports / "index.html", page)
-    return found, problems
+    return found
 
 
 def summary(found):
@@ -71,8 +72,8 @@ def misunderstood(found):
     times = Counter((row.misconception, row.exercise) for rows in found.values() for row in rows if row.misconception)
     lines = []
     for (ids, exercise), count in times.most_common():
-        known = next((m for m in EXERCISES[exercise].misconceptions if m.id == ids.split(";")[0]), None)
-        lines.append((ids, exercise, count, known.says if known else "", known.hint if known else ""))
+        sentences = {m.id: (m.says, m.hint) for m in EXERCISES[exercise].misconceptions}
+        lines.append((ids, exercise, count, *(GENERAL | sentences)[ids.split(";")[0]]))
     return lines
 
 

@@ -24,8 +24,8 @@ HERE = Path(__file__).parent
 class Limits:
     """What one submission may use. Seconds are of wall time; a limit reached costs the exercise, not the notebook."""
 
-    cell: float = 20.0
-    call: float = 4.0
+    cell: float = 10.0
+    call: float = 3.0
     notebook: float = 90.0
     submission: float = 240.0
     grace: float = 1.0  # between the interrupt and the end of the process
