@@ -389,7 +389,7 @@ def test_arguments_have_the_promised_types(name):
 
 
 def test_truths_are_far_from_the_tolerance():
-    for seed in SEEDS:
+    for seed in range(100):
         for case in EXERCISES["is_rotation"].cases(np.random.default_rng(seed)):
             R = case.args[0]
             off = max(np.abs(R.T @ R - np.eye(3)).max(), abs(np.linalg.det(R) - 1.0))
@@ -398,6 +398,7 @@ def test_truths_are_far_from_the_tolerance():
             q1, q2 = case.args
             off = min(np.abs(q1 - q2).max(), np.abs(q1 + q2).max())
             assert off < TOLERANCE / 50 or off > TOLERANCE * 1000
+            assert off < TOLERANCE / 50 or not np.isclose(abs(q1 @ q2), 1.0)  # a fair way to compare, too
 
 
 def test_every_family_of_truths_has_no_single_answer_but_negatives():
@@ -437,7 +438,7 @@ def test_half_turns_have_a_trace_of_exactly_minus_one():
 def test_quaternions_of_either_sign_are_arguments():
     pose = Pose(Point(1, 2, 3), Quaternion(0.5, 0.5, -0.5, 0.5))
     negated = Pose(Point(1, 2, 3), Quaternion(-0.5, -0.5, 0.5, -0.5))
-    assert either_sign([pose, pose, pose]) == [pose, negated, pose]
+    assert either_sign([negated, pose, pose]) == [pose, negated, pose]
     for name in ("pose_to_transform", "transform_pose", "pre_grasp", "waypoint"):
         cases = EXERCISES[name].cases(np.random.default_rng(PUBLIC_SEED))
         w = [arg.orientation.w for case in cases for arg in case.args if isinstance(arg, Pose)]

@@ -122,5 +122,9 @@ def generic_pose(rng):
 
 
 def either_sign(poses):
-    """The poses, every second one with its quaternion negated: q and -q are the same orientation."""
-    return [pose_of(position(p), orientation(p) * (-1) ** index) for index, p in enumerate(poses)]
+    """The poses, with w < 0 in every second quaternion and w > 0 in the others: q and -q are the same orientation."""
+    result = []
+    for index, pose in enumerate(poses):
+        q = orientation(pose)
+        result.append(pose_of(position(pose), q * (-1) ** index * np.copysign(1.0, q[3])))
+    return result
