@@ -33,6 +33,8 @@ def course(tmp_path_factory):
     shutil.copy(ROOT / "nbgrader_config.py", root)
     course = Course(root)
     release(course)
+    (course.package / "__pycache__").mkdir()
+    (course.package / "__pycache__" / "check.pyc").write_bytes(b"made at run time")
     enroll(course)
     return course
 
@@ -103,7 +105,8 @@ def test_submission_is_valid_and_holds_the_answers(path, course):
             for exercise in released.points:
                 source = handed_in[f"{exercise}-solution"].source
                 assert ("raise NotImplementedError" in source) == (exercise not in student.definitions)
-                assert f"def {exercise}(" in source
+                functions = {node.name for node in ast.parse(source).body if isinstance(node, ast.FunctionDef)}
+                assert functions & set(EXERCISES) == {exercise}
                 assert handed_in[exercise] == released.cells[exercise]
             for question in set(student.answers) & set(handed_in):
                 assert handed_in[question].source == student.answers[question].strip()
