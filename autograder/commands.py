@@ -50,7 +50,8 @@ def _parser():
 
     sub = add("demo", demo, "grade a small class of realistic submissions, with feedback and the class report")
     sub.add_argument("--remove", action="store_true", help="remove the demo's class again")
-    add("lab", lab, "open the student's notebooks in JupyterLab")
+    sub = add("lab", lab, "open the student's notebooks in JupyterLab")
+    sub.add_argument("arguments", nargs=argparse.REMAINDER, help="passed on to JupyterLab, such as --port=8889")
     add("release", release, "make notebooks/ from source/ and say what changed")
     sub = add("grade", grade, "grade submitted/ into the gradebook, autograded/, feedback/ and reports/")
     sub.add_argument("students", nargs="*", metavar="STUDENT", help="only these (default: everybody)")
@@ -83,7 +84,7 @@ def lab(options):
     folder = course().release
     if not folder.is_dir():
         raise CourseError("There are no notebooks yet: run `python3 -m autograder release` first.")
-    return subprocess.call([sys.executable, "-m", "jupyterlab", str(folder)])
+    return subprocess.call([sys.executable, "-m", "jupyterlab", str(folder), *options.arguments])
 
 
 def release(options):

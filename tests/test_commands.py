@@ -1,0 +1,284 @@
+"""The command line as an instructor uses it: what it says, what it writes, and what it does with bad input."""
+
+import csv
+import json
+import os
+import shutil
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import nbformat
+import pytest
+from autograder.course import Course
+from autograder.exercises import EXERCISES
+
+
+def run(course, *arguments, path=None):
+    """Run `python3 -m autograder …` in a course; (exit code, all that was printed)."""
+    environment = {**os.environ, "COLUMNS": "200"}
+    if path is not None:
+        environment["PATH"] = path
+    root = course.root if isinstance(course, Course) else course
+    result = subprocess.run(
+        [sys.executable, "-m", "autograder", *arguments],
+        cwd=root, env=environment, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=600,
+    )  # fmt: skip
+    said = result.stdout + result.stderr
+    assert "Traceback (most recent call last)" not in said, said
+    return result.returncode, said
+
+
+def verdicts(course):
+    with open(course.reports / "verdicts.csv", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def scores(course, student):
+    return {row["exercise"]: float(row["score"]) for row in verdicts(course) if row["student"] == student}
+
+
+def statuses(course, student):
+    return {row["exercise"]: row["status"] for row in verdicts(course) if row["student"] == student}
+
+
+@pytest.fixture
+def without_bubblewrap(tmp_path):
+    """A PATH on which there is no bwrap."""
+    folder = tmp_path / "bin"
+    folder.mkdir()
+    for name in ("alembic", "jupyter", "true"):
+        found = shutil.which(name)
+        if found:
+            (folder / name).symlink_to(found)
+    return str(folder)
+
+
+# --- grade ----------------------------------------------------------------------------------------------------------
+
+
+def test_grading_a_small_class(course, hand_in, solved, sandboxed):
+    hand_in(course, "alice", solved)
+    hand_in(course, "bob", {name: course.release / f"{name}.ipynb" for name in list(course.notebooks)[:2]})
+    hand_in(course, "carol", {**solved, "3_chaining": b"{ this is no notebook"})
+    code, said = run(course, "grade", "--no-feedback")
+    assert code == 0, said
+    assert "bob: 5_pre_grasp.ipynb: not handed in" in said
+    assert "carol: 3_chaining.ipynb: it cannot be read" in said
+
+    rows = verdicts(course)
+    assert list(rows[0]) == ["student", "notebook", "exercise", "score", "max_score", "status", "misconception"]
+    assert [row["exercise"] for row in rows if row["student"] == "alice"] == list(EXERCISES)
+    assert all(row["score"] == row["max_score"] for row in rows if row["student"] == "alice")
+    assert set(scores(course, "bob").values()) == {0.0}
+    assert statuses(course, "bob")["rotation_about_z"] == "error"
+    assert statuses(course, "bob")["pre_grasp"] == "missing"
+    assert statuses(course, "carol")["chain"] == "unreadable"
+    assert sum(scores(course, "carol").values()) == 30
+    page = (course.reports / "index.html").read_text()
+    assert "carol" in page and "could not be read" in page
+
+    code, said = run(course, "grade", "--no-feedback")
+    assert code == 0 and "0 graded" in said and "3 unchanged" in said
+    (course.submitted("bob") / "1_rotation.ipynb").write_bytes(solved["1_rotation"].read_bytes())
+    code, said = run(course, "grade", "--no-feedback")
+    assert "1 graded" in said and "2 unchanged" in said
+    assert sum(scores(course, "bob").values()) == 7
+    assert sum(scores(course, "alice").values()) == 34
+
+    code, said = run(course, "export")
+    assert "alice,34.0,40.0,yes" in said and "bob,7.0,40.0," in said
+
+
+def test_feedback_is_written_for_each_student(course, hand_in, solved, sandboxed):
+    hand_in(course, "alice", {"5_pre_grasp": solved["5_pre_grasp"]})
+    code, said = run(course, "grade")
+    assert code == 0, said
+    pages = [path.name for path in course.feedback("alice").glob("*.html")]
+    assert pages == ["5_pre_grasp.html"]
+    text = (course.feedback("alice") / "5_pre_grasp.html").read_text()
+    assert "pre_grasp: all right." in text and "3 of 3 points" in text
+
+
+def test_an_unknown_student_is_said_and_the_others_are_graded(course, hand_in, solved, sandboxed):
+    hand_in(course, "alice", {"1_rotation": solved["1_rotation"]})
+    code, said = run(course, "grade", "alise", "alice", "--no-feedback")
+    assert code == 1
+    assert "alise: no submission in submitted/alise/transforms. Did you mean alice?" in said
+    assert scores(course, "alice")["is_rotation"] == 2
+
+
+def test_a_notebook_of_another_name_is_said(course, hand_in, solved, sandboxed):
+    hand_in(course, "alice", {"1_rotation-Copy1": solved["1_rotation"]})
+    code, said = run(course, "grade", "--no-feedback")
+    assert code == 0
+    assert "alice: 1_rotation-Copy1.ipynb: no notebook of this assignment has that name; rename it to one of 1_rotation.ipynb" in said
+    assert set(statuses(course, "alice").values()) == {"missing"}
+
+
+def test_statuses_of_what_does_not_end(course, hand_in, solved, sandboxed):
+    def with_answer(name, exercise, source):
+        notebook = nbformat.read(solved[name], as_version=4)
+        next(c for c in notebook.cells if c.metadata.get("nbgrader", {}).get("grade_id") == f"{exercise}-solution").source = source
+        return notebook
+
+    hand_in(course, "loop", {"1_rotation": with_answer("1_rotation", "same_rotation", "def same_rotation(a, b):\n    while True: pass")})
+    hand_in(course, "exits", {"1_rotation": with_answer("1_rotation", "same_rotation", "def same_rotation(a, b):\n    import os; os._exit(0)")})
+    hand_in(course, "raises", {"1_rotation": with_answer("1_rotation", "same_rotation", "def same_rotation(a, b):\n    return undefined")})
+    hand_in(course, "none", {"1_rotation": with_answer("1_rotation", "same_rotation", "def same_rotation(a, b):\n    print(a == b)")})
+    code, said = run(course, "grade", "--no-feedback")
+    assert code == 0, said
+    wrong = {row["student"]: (row["status"], row["misconception"]) for row in verdicts(course) if row["exercise"] == "same_rotation"}
+    assert wrong == {
+        "loop": ("timeout", ""),
+        "exits": ("killed", ""),
+        "raises": ("error", ""),
+        "none": ("graded", "returned-none"),
+    }
+    for student in wrong:
+        assert sum(scores(course, student).values()) == 6, student
+
+
+def test_no_submitted_folder(course, sandboxed):
+    code, said = run(course, "grade")
+    assert code == 2
+    assert "There is no submitted/ folder" in said and "submitted/STUDENT/transforms/" in said
+
+
+@pytest.mark.parametrize("what", ["gradebook", "assignment", "notebooks"])
+def test_an_assignment_that_was_never_released(course, hand_in, solved, sandboxed, what):
+    hand_in(course, "alice", solved)
+    if what == "gradebook":
+        course.gradebook.unlink()
+    elif what == "notebooks":
+        shutil.rmtree(course.release)
+    else:
+        from autograder.gradebook import Writer
+
+        with Writer(course) as writer:
+            writer.gradebook.remove_assignment("transforms")
+    code, said = run(course, "grade")
+    assert code == 2
+    assert "never released" in said and "python3 -m autograder release" in said
+
+
+def test_outside_a_course(course, tmp_path):
+    elsewhere = tmp_path / "elsewhere"
+    shutil.copytree(course.root / "autograder", elsewhere / "autograder")
+    shutil.copytree(course.package, elsewhere / "source/other/transform_lab")
+    shutil.copy(course.root / "environment.txt", elsewhere)
+    environment = {**os.environ, "PYTHONPATH": str(course.package.parent)}
+    result = subprocess.run(
+        [sys.executable, "-m", "autograder", "grade"], cwd=elsewhere, env=environment, capture_output=True, text=True
+    )
+    assert result.returncode == 2
+    assert "is no course folder" in result.stderr and "nbgrader_config.py" in result.stderr
+
+
+def test_without_bubblewrap_nothing_is_graded_unless_asked_for(course, hand_in, solved, without_bubblewrap):
+    hand_in(course, "alice", {"1_rotation": solved["1_rotation"]})
+    code, said = run(course, "grade", "--no-feedback", path=without_bubblewrap)
+    assert code == 2
+    assert "apt-get install bubblewrap" in said and "--unsafe-no-sandbox" in said
+    assert not course.autograded("alice").exists()
+    code, said = run(course, "grade", "--no-feedback", "--unsafe-no-sandbox", path=without_bubblewrap)
+    assert code == 0, said
+    assert "NOT PROTECTED" in said and "gradebook" in said
+    assert scores(course, "alice")["is_rotation"] == 2
+
+
+# --- check, demo, and the rest --------------------------------------------------------------------------------------
+
+
+def test_check_needs_no_gradebook(course, solved, sandboxed):
+    course.gradebook.unlink()
+    code, said = run(course, "check", *map(str, solved.values()))
+    assert code == 0 and "34 of 34 points" in said
+    code, said = run(course, "check", str(course.release / "1_rotation.ipynb"))
+    assert code == 1 and "0 of 7 points" in said and "Not done yet." in said
+
+
+def test_check_says_what_is_wrong_with_files(course, sandboxed):
+    odd = course.root / "homework.ipynb"
+    odd.write_text("{}")
+    code, said = run(course, "check", str(odd), "nowhere/1_rotation.ipynb")
+    assert code == 1
+    assert "homework.ipynb: no notebook of this assignment has that name; there are 1_rotation.ipynb" in said
+    assert "nowhere/1_rotation.ipynb: there is no such file" in said
+    broken = course.root / "1_rotation.ipynb"
+    broken.write_text("{")
+    code, said = run(course, "check", str(broken))
+    assert code == 1 and "cannot be read" in said and "0 of 7 points" in said
+
+
+def test_the_demo(course, sandboxed):
+    code, said = run(course, "demo")
+    assert code == 0, said
+    rows = verdicts(course)
+    students = {row["student"] for row in rows}
+    assert len(students) >= 12
+    assert {row["exercise"] for row in rows} == set(EXERCISES)
+    assert len(rows) == len(students) * len(EXERCISES)
+    assert {"graded", "missing", "error", "timeout", "unreadable"} <= {row["status"] for row in rows}
+    assert "base-frame-offset" in {row["misconception"] for row in rows}
+    for student in students:
+        assert list(course.feedback(student).glob("*.html")), student
+        assert student in said
+    for place in ("reports/transforms/index.html", "reports/transforms/verdicts.csv", "feedback", "gradebook.db"):
+        assert place in said
+    code, said = run(course, "report")
+    assert code == 0 and verdicts(course) == rows
+    code, said = run(course, "demo", "--remove")
+    assert code == 0
+    assert list((course.root / "submitted").iterdir()) == []
+    assert "demo_" not in run(course, "export")[1]
+
+
+def test_the_demo_runs_without_bubblewrap_and_says_so(course, without_bubblewrap):
+    code, said = run(course, "demo", path=without_bubblewrap)
+    assert code == 0, said
+    assert "runs its own submissions without a sandbox" in said
+    assert len({row["student"] for row in verdicts(course)}) >= 12
+
+
+def test_the_demo_leaves_a_real_class_alone(course, hand_in, solved):
+    hand_in(course, "alice", solved)
+    code, said = run(course, "demo")
+    assert code == 2 and "real submissions (alice" in said
+    assert [path.name for path in (course.root / "submitted").iterdir()] == ["alice"]
+
+
+def test_doctor(course, sandboxed, without_bubblewrap):
+    code, said = run(course, "doctor")
+    assert "ok    bubblewrap works" in said
+    code, said = run(course, "doctor", path=without_bubblewrap)
+    assert code == 1 and "LOOK  No sandbox" in said
+
+
+def test_the_package_is_the_same_each_time(course, tmp_path):
+    for name in ("one.zip", "two.zip"):
+        code, said = run(course, "package", "--output", str(tmp_path / name))
+        assert code == 0, said
+    assert (tmp_path / "one.zip").read_bytes() == (tmp_path / "two.zip").read_bytes()
+    names = zipfile.ZipFile(tmp_path / "one.zip").namelist()
+    assert "transforms/1_rotation.ipynb" in names and "transforms/transform_lab/key.json" in names
+
+
+def test_release_says_what_changed(course):
+    path = course.source / "3_chaining.ipynb"
+    raw = json.loads(path.read_text())
+    raw["cells"][0]["source"] = ["# Another title"]
+    path.write_text(json.dumps(raw))
+    code, said = run(course, "release")
+    assert code == 0 and "changed: 3_chaining.ipynb" in said
+    code, said = run(course, "release")
+    assert code == 0 and "notebooks/transforms is up to date." in said
+
+
+def test_help_names_every_command_of_the_readme(course):
+    code, said = run(course, "--help")
+    assert code == 0
+    for command in ("demo", "lab", "release", "grade", "report", "check", "doctor", "package", "export", "test"):
+        assert f"    {command} " in said
+    assert Path(course.root, "README.md").exists()
