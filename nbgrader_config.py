@@ -1,4 +1,4 @@
-"""nbgrader reads this from the course's root: `nbgrader autograde transforms` and the formgrader grade through our plug-in."""
+"""nbgrader's settings for this course: `nbgrader autograde` and the formgrader grade through our plug-in."""
 
 import sys
 import warnings

@@ -17,7 +17,11 @@ def check_files(course, paths, seed=None, isolated=True):
     fine = [path for path in paths if path.is_file() and path.stem in course.notebooks]
     for path in (path for path in paths if path not in fine):
         names = ", ".join(f"{name}.ipynb" for name in course.notebooks)
-        wrong = f"no notebook of this assignment has that name; there are {names}" if path.is_file() else "there is no such file"
+        wrong = (
+            f"no notebook of this assignment has that name; there are {names}"
+            if path.is_file()
+            else "there is no such file"
+        )
         problems.append(f"{path}: {wrong}.")
     if not fine:
         return found, problems

@@ -36,7 +36,9 @@ def run(arguments):
 
 
 def _parser():
-    parser = argparse.ArgumentParser(prog="python3 -m autograder", description="Courseware and grader for the transform lab.")
+    parser = argparse.ArgumentParser(
+        prog="python3 -m autograder", description="Courseware and grader for the transform lab."
+    )
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
     def add(name, command, help):
@@ -60,7 +62,9 @@ def _parser():
     sub.add_argument("--no-feedback", action="store_true", help="leave out nbgrader's feedback pages")
     sandbox_options(sub)
     add("report", report, "write the class report from what is graded")
-    sub = add("check", check, "grade one student's notebook files without a course; exit 1 unless all points are earned")
+    sub = add(
+        "check", check, "grade one student's notebook files without a course; exit 1 unless all points are earned"
+    )
     sub.add_argument("notebooks", nargs="+", type=Path, metavar="NOTEBOOK")
     sandbox_options(sub)
     add("doctor", doctor, "say what protects grading on this machine, and what does not")
@@ -176,7 +180,8 @@ def _grade(here, students, options, protected):
         recorded = writer.students()
     found = report.write(here, [student for student in here.students() if student in recorded])
     _show_class(found, students)
-    console.print(f"{len(fresh)} graded (hidden cases drawn from seed {seed}), {len(students) - len(fresh) - len(failed)} unchanged.")
+    unchanged = len(students) - len(fresh) - len(failed)
+    console.print(f"{len(fresh)} graded (hidden cases drawn from seed {seed}), {unchanged} unchanged.")
     for what, where in (
         ("class report", here.reports / "index.html"),
         ("every verdict", here.reports / "verdicts.csv"),
@@ -246,7 +251,10 @@ def demo(options):
     students = enroll(here)
     problem = sandbox.problem()
     if problem:
-        errors.print(f"{problem}\nThe demo runs its own submissions without a sandbox; grading yours would be refused.", markup=False)
+        errors.print(
+            f"{problem}\nThe demo runs its own submissions without a sandbox; grading yours would be refused.",
+            markup=False,
+        )
     failed = _grade(here, students, _grading_options(), protected=problem is None)
     console.print("`python3 -m autograder demo --remove` takes the demo's class out again.", markup=False)
     return 1 if failed else 0

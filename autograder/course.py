@@ -67,7 +67,11 @@ class Course:
                 "There is no submitted/ folder. Put each student's files into "
                 f"submitted/STUDENT/{ASSIGNMENT}/ (or run `nbgrader collect {ASSIGNMENT}`), then grade."
             )
-        return sorted(path.name for path in folder.iterdir() if not path.name.startswith(".") and self.submitted(path.name).is_dir())
+        return sorted(
+            path.name
+            for path in folder.iterdir()
+            if not path.name.startswith(".") and self.submitted(path.name).is_dir()
+        )
 
     @cached_property
     def notebooks(self):

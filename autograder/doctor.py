@@ -14,15 +14,23 @@ def examine(course):
         lines.append((False, f"No sandbox: {problem} `grade` refuses to run without --unsafe-no-sandbox."))
         return lines
     lines += [
-        (True, "bubblewrap works: a notebook sees no network, no other process, no file of yours, no environment variable."),
+        (
+            True,
+            "bubblewrap works: a notebook sees no network, no other process, no file and no variable of yours.",
+        ),
         (True, "Verdicts are reached outside the notebook's process: no expected value or hidden case is ever in it."),
         (
             True,
             f"Limits: {limits.call:g} s a call, {limits.cell:g} s a cell, {limits.notebook:g} s a notebook, "
-            f"{limits.submission:g} s a submission; {limits.memory / 1e9:g} GB for a process, {limits.processes} processes.",
+            f"{limits.submission:g} s a submission; {limits.memory / 1e9:g} GB a process, {limits.processes} processes.",
         ),
-        (False, "Not filtered: system calls (no seccomp filter yet); a kernel with a known hole is not protected against it."),
+        (
+            False,
+            "Not filtered: system calls (no seccomp filter yet); a hole in the kernel would be one in the sandbox.",
+        ),
     ]
     released = course.release.is_dir()
-    lines.append((released, f"notebooks/ is {'there' if released else 'missing: run `python3 -m autograder release`'}."))
+    lines.append(
+        (released, f"notebooks/ is {'there' if released else 'missing: run `python3 -m autograder release`'}.")
+    )
     return lines

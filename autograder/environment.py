@@ -1,4 +1,4 @@
-"""The project's own environment: `.venv`, made from environment.txt on first use. Only the standard library is used here.
+"""The project's own environment: `.venv`, made from environment.txt on first use. Standard library only.
 
 An interpreter that already has every package at its version is used as it is. Otherwise `.venv` is made, once; a stamp
 written last says that it is whole, so a set-up that failed or was interrupted is repaired by the next command.
@@ -56,7 +56,9 @@ def make(root):
     digest = hashlib.sha256(requirements.read_bytes() + str(folder).encode()).hexdigest()
     if stamp.exists() and stamp.read_text() == digest and python.exists():
         return python
-    print("Setting up: installing the packages of environment.txt into .venv (once; a minute or two) …", file=sys.stderr)
+    print(
+        "Setting up: installing the packages of environment.txt into .venv (once; a minute or two) …", file=sys.stderr
+    )
     base = getattr(sys, "_base_executable", None) or sys.executable
     shutil.rmtree(folder, ignore_errors=True)
     steps = (
@@ -69,8 +71,8 @@ def make(root):
             reason = "\n".join((result.stderr or result.stdout).strip().splitlines()[-5:])
             raise SetupFailed(
                 f"The set-up failed at: {' '.join(step[1:4])}\n{reason}\n"
-                "Check the network (and that Python's venv module is installed: apt install python3-venv), then run the "
-                "same command again; it starts over."
+                "Check the network (and that Python's venv module is installed: apt install python3-venv), then run "
+                "the same command again; it starts over."
             )
     stamp.write_text(digest)
     return python

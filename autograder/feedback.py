@@ -20,5 +20,11 @@ def _one(course, student):
 
     config = settings(course)
     logging.getLogger("traitlets").setLevel(logging.CRITICAL)
-    result = NbGraderAPI(CourseDirectory(config=config), config=config).generate_feedback(ASSIGNMENT, student, force=True)
-    return None if result["success"] else (result.get("error") or result.get("log") or "no reason given").strip().splitlines()[-1]
+    result = NbGraderAPI(CourseDirectory(config=config), config=config).generate_feedback(
+        ASSIGNMENT, student, force=True
+    )
+    return (
+        None
+        if result["success"]
+        else (result.get("error") or result.get("log") or "no reason given").strip().splitlines()[-1]
+    )

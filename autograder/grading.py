@@ -11,7 +11,7 @@ import os
 import secrets
 import stat
 from dataclasses import asdict, dataclass, field
-from datetime import datetime, timezone
+from datetime import UTC, datetime
 from pathlib import Path
 
 import nbformat
@@ -45,7 +45,7 @@ class Submission:
 
 @dataclass(frozen=True)
 class Assignment:
-    """What submissions are graded against: the released notebooks, the hidden cases of this run, the students' package."""
+    """What submissions are graded against: released notebooks, this run's hidden cases, the students' package."""
 
     released: dict  # {notebook name: course.Released}
     keys: dict  # {exercise: plain data}
@@ -99,7 +99,9 @@ def collect(course, student):
     folder, files, problems = course.submitted(student), {}, []
     for path in sorted(folder.rglob("*")):
         relative = path.relative_to(folder)
-        if relative.parts[0] == "transform_lab" or any(part.startswith(".") or part == "__pycache__" for part in relative.parts):
+        if relative.parts[0] == "transform_lab" or any(
+            part.startswith(".") or part == "__pycache__" for part in relative.parts
+        ):
             continue  # the grader uses the course's own package
         content, problem = _read(path)
         if problem:
@@ -110,7 +112,9 @@ def collect(course, student):
             files[relative.as_posix()] = content
     for name in (path for path in files if path.endswith(".ipynb") and Path(path).stem not in course.notebooks):
         wanted = ", ".join(f"{released}.ipynb" for released in course.notebooks)
-        problems.append(f"{name}: no notebook of this assignment has that name; rename it to one of {wanted} and grade again.")
+        problems.append(
+            f"{name}: no notebook of this assignment has that name; rename it to one of {wanted} and grade again."
+        )
     for name in (name for name in course.notebooks if f"{name}.ipynb" not in files):
         problems.append(f"{name}.ipynb: not handed in; 0 points.")
     return Submission(student, files, tuple(problems))
@@ -147,7 +151,7 @@ def record(found, problems, assignment, digest):
         "rows": [asdict(row) for row in found],
         "problems": list(problems),
         "seed": assignment.seed,
-        "graded": datetime.now(timezone.utc).isoformat(timespec="seconds"),
+        "graded": datetime.now(UTC).isoformat(timespec="seconds"),
         "submission": digest,
         "specification": assignment.digest,
     }

@@ -85,7 +85,9 @@ def _keep_one_of_each(intake, released):
     All other metadata goes: tags and hidden inputs change how a cell is run or shown. A test cell is known by its text,
     too: some editors drop the metadata.
     """
-    by_source = {cell.source.strip(): grade_id for grade_id, cell in released.cells.items() if grade_id in released.points}
+    by_source = {
+        cell.source.strip(): grade_id for grade_id, cell in released.cells.items() if grade_id in released.points
+    }
     found, known_by_text = {}, {}
     for cell in intake.notebook.cells:
         claimed = cell.metadata.get("nbgrader")
@@ -98,7 +100,9 @@ def _keep_one_of_each(intake, released):
     for grade_id, cell in known_by_text.items():
         if grade_id not in found:
             found[grade_id] = [(cell, {})]
-            intake.say(released, f"the test cell of {grade_id} had lost its nbgrader data; it was recognised by its text")
+            intake.say(
+                released, f"the test cell of {grade_id} had lost its nbgrader data; it was recognised by its text"
+            )
     for grade_id, cells in found.items():
         if len(cells) > 1:
             intake.say(released, f"the cell {grade_id} is there {len(cells)} times; the last one was graded")
@@ -129,7 +133,9 @@ def _add_missing(intake, released, grade_id, original):
     intake.notebook.cells.append(copy.deepcopy(original))
     if grade_id in released.points:
         intake.statuses[grade_id] = "missing"
-        intake.say(released, f"the test cell of {grade_id} is missing: 0 points; put it back into the file and grade again")
+        intake.say(
+            released, f"the test cell of {grade_id} is missing: 0 points; put it back into the file and grade again"
+        )
     elif nbgrader.grade:
         intake.say(released, f"the answer cell {grade_id} is missing; an empty one was added")
 

@@ -26,7 +26,9 @@ def safe(output):
         }
     if kind in ("display_data", "execute_result"):
         data = output.get("data") if isinstance(output.get("data"), dict) else {}
-        kept = {mime: value for mime, value in ((mime, _safe_data(mime, value)) for mime, value in data.items()) if value}
+        kept = {
+            mime: value for mime, value in ((mime, _safe_data(mime, value)) for mime, value in data.items()) if value
+        }
         if not kept:
             return None
         result = {"output_type": kind, "data": kept, "metadata": {}}

@@ -61,5 +61,7 @@ class Judge(NbGraderPreprocessor):
         submission = collect(self.parent.course, names["student"])
         with grader.sandbox(submission) as box:
             verdicts = judge(intake, released, grader.keys, box)
-        nb.metadata[RECORD] = nbformat.from_dict(record(rows(released, verdicts), intake.problems, grader, submission.digest))
+        nb.metadata[RECORD] = nbformat.from_dict(
+            record(rows(released, verdicts), intake.problems, grader, submission.digest)
+        )
         return nb, resources

@@ -45,7 +45,9 @@ def release(course):
             if before:
                 shutil.copytree(Path(kept, ASSIGNMENT), course.release)
             reason = (result.get("error") or result.get("log") or "").strip().splitlines()
-            raise CourseError(f"nbgrader could not make the release, and notebooks/ is as before: {reason[-1] if reason else '?'}")
+            raise CourseError(
+                f"nbgrader could not make the release, and notebooks/ is as before: {reason[-1] if reason else '?'}"
+            )
     return _changes(before, _contents(course.release))
 
 

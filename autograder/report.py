@@ -8,7 +8,7 @@ import io
 import os
 from collections import Counter
 from dataclasses import astuple, fields
-from datetime import datetime, timezone
+from datetime import UTC, datetime
 
 import jinja2
 from transform_lab.verdict import GENERAL
@@ -26,8 +26,12 @@ def verdicts(course, students):
     found, problems = {}, {}
     for student in students:
         records = recorded(course, student)
-        found[student] = [row for name, released in course.notebooks.items() for row in _rows(records.get(name), released)]
-        problems[student] = list(dict.fromkeys(problem for record in records.values() for problem in record["problems"]))
+        found[student] = [
+            row for name, released in course.notebooks.items() for row in _rows(records.get(name), released)
+        ]
+        problems[student] = list(
+            dict.fromkeys(problem for record in records.values() for problem in record["problems"])
+        )
     return found, problems
 
 
@@ -44,10 +48,12 @@ def write(course, students):
     writer.writerow(COLUMNS)
     writer.writerows((student, *astuple(row)) for student, rows in found.items() for row in rows)
     _replace(course.reports / "verdicts.csv", table.getvalue())
-    environment = jinja2.Environment(loader=jinja2.PackageLoader("autograder"), autoescape=True, trim_blocks=True, lstrip_blocks=True)
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("autograder"), autoescape=True, trim_blocks=True, lstrip_blocks=True
+    )
     page = environment.get_template("report.html").render(
         assignment=ASSIGNMENT,
-        made=datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
+        made=datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
         students={student: _total(rows) for student, rows in found.items()},
         exercises=summary(found),
         misunderstood=misunderstood(found),

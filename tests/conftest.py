@@ -33,16 +33,27 @@ def course(released, tmp_path):
     return Course(tmp_path / "course")
 
 
+def lacking(what):
+    """Skip a test for want of something this machine does not have; in CI that is a failure."""
+    if os.environ.get("CI") == "true":
+        pytest.fail(what)
+    pytest.skip(what)
+
+
 @pytest.fixture
 def sandboxed():
-    """For tests that need bubblewrap: elsewhere they are skipped, in CI they fail."""
+    """For tests that need bubblewrap."""
     from autograder import sandbox
 
-    problem = sandbox.problem()
-    if problem and os.environ.get("CI") == "true":
-        pytest.fail(problem)
-    if problem:
-        pytest.skip(problem)
+    if problem := sandbox.problem():
+        lacking(problem)
+
+
+@pytest.fixture
+def chromium():
+    """The path of a Chromium browser."""
+    found = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    return found or lacking("needs Chromium, to open pages as a student's browser does")
 
 
 @pytest.fixture

@@ -25,7 +25,9 @@ def test_numpy_scalars_become_numbers(value):
     assert type(there_and_back(value)) is type(value.item())
 
 
-@pytest.mark.parametrize("value", [np.eye(4), np.arange(3), np.float32([1, 2]), np.array([[True, False]]), np.zeros((0, 3))])
+@pytest.mark.parametrize(
+    "value", [np.eye(4), np.arange(3), np.float32([1, 2]), np.array([[True, False]]), np.zeros((0, 3))]
+)
 def test_arrays_keep_values_and_shape(value):
     np.testing.assert_array_equal(there_and_back(value), value)
     assert there_and_back(value).shape == value.shape

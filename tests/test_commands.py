@@ -11,6 +11,7 @@ from pathlib import Path
 
 import nbformat
 import pytest
+
 from autograder.course import Course
 from autograder.exercises import EXERCISES
 
@@ -113,23 +114,52 @@ def test_a_notebook_of_another_name_is_said(course, hand_in, solved, sandboxed):
     hand_in(course, "alice", {"1_rotation-Copy1": solved["1_rotation"]})
     code, said = run(course, "grade", "--no-feedback")
     assert code == 0
-    assert "alice: 1_rotation-Copy1.ipynb: no notebook of this assignment has that name; rename it to one of 1_rotation.ipynb" in said
+    assert (
+        "alice: 1_rotation-Copy1.ipynb: no notebook of this assignment has that name; rename it to one of 1_rotation.ipynb"
+        in said
+    )
     assert set(statuses(course, "alice").values()) == {"missing"}
 
 
 def test_statuses_of_what_does_not_end(course, hand_in, solved, sandboxed):
     def with_answer(name, exercise, source):
         notebook = nbformat.read(solved[name], as_version=4)
-        next(c for c in notebook.cells if c.metadata.get("nbgrader", {}).get("grade_id") == f"{exercise}-solution").source = source
+        next(
+            c for c in notebook.cells if c.metadata.get("nbgrader", {}).get("grade_id") == f"{exercise}-solution"
+        ).source = source
         return notebook
 
-    hand_in(course, "loop", {"1_rotation": with_answer("1_rotation", "same_rotation", "def same_rotation(a, b):\n    while True: pass")})
-    hand_in(course, "exits", {"1_rotation": with_answer("1_rotation", "same_rotation", "def same_rotation(a, b):\n    import os; os._exit(0)")})
-    hand_in(course, "raises", {"1_rotation": with_answer("1_rotation", "same_rotation", "def same_rotation(a, b):\n    return undefined")})
-    hand_in(course, "none", {"1_rotation": with_answer("1_rotation", "same_rotation", "def same_rotation(a, b):\n    print(a == b)")})
+    hand_in(
+        course,
+        "loop",
+        {"1_rotation": with_answer("1_rotation", "same_rotation", "def same_rotation(a, b):\n    while True: pass")},
+    )
+    hand_in(
+        course,
+        "exits",
+        {
+            "1_rotation": with_answer(
+                "1_rotation", "same_rotation", "def same_rotation(a, b):\n    import os; os._exit(0)"
+            )
+        },
+    )
+    hand_in(
+        course,
+        "raises",
+        {"1_rotation": with_answer("1_rotation", "same_rotation", "def same_rotation(a, b):\n    return undefined")},
+    )
+    hand_in(
+        course,
+        "none",
+        {"1_rotation": with_answer("1_rotation", "same_rotation", "def same_rotation(a, b):\n    print(a == b)")},
+    )
     code, said = run(course, "grade", "--no-feedback")
     assert code == 0, said
-    wrong = {row["student"]: (row["status"], row["misconception"]) for row in verdicts(course) if row["exercise"] == "same_rotation"}
+    wrong = {
+        row["student"]: (row["status"], row["misconception"])
+        for row in verdicts(course)
+        if row["exercise"] == "same_rotation"
+    }
     assert wrong == {
         "loop": ("timeout", ""),
         "exits": ("killed", ""),

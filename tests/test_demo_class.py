@@ -9,11 +9,12 @@ from pathlib import Path
 import nbformat
 import numpy as np
 import pytest
+from transform_lab.check import call
+from transform_lab.verdict import examine
+
 from autograder.course import Course
 from autograder.demo import STUDENTS, Student, enroll, is_demo
 from autograder.exercises import EXERCISES, key
-from transform_lab.check import call
-from transform_lab.verdict import examine
 
 ROOT = Path(__file__).parent.parent
 PATHS = sorted(STUDENTS.glob("*.py"))

@@ -1,4 +1,4 @@
-"""The first use makes `.venv`; what was interrupted, changed or broken is made anew. Real virtual environments, no network."""
+"""The first use makes `.venv`; what was interrupted, changed or broken is made anew. Real environments, no network."""
 
 import shutil
 import subprocess
@@ -6,8 +6,9 @@ import sys
 import zipfile
 
 import pytest
-from autograder import environment
 from conftest import ROOT
+
+from autograder import environment
 
 NOTHING = "# no package\n"
 
@@ -19,7 +20,9 @@ def root(tmp_path):
 
 
 def version(python):
-    return subprocess.run([python, "-c", "import sys; print(sys.prefix)"], capture_output=True, text=True).stdout.strip()
+    return subprocess.run(
+        [python, "-c", "import sys; print(sys.prefix)"], capture_output=True, text=True
+    ).stdout.strip()
 
 
 def test_it_is_made_once(root):
@@ -94,7 +97,9 @@ def test_a_command_goes_on_in_the_new_environment(root):
     package.mkdir()
     for name in ("__init__.py", "__main__.py", "environment.py"):
         shutil.copy(ROOT / "autograder" / name, package)
-    (package / "commands.py").write_text("import sys\ndef run(arguments):\n    print(sys.prefix, arguments)\n    return 3\n")
+    (package / "commands.py").write_text(
+        "import sys\ndef run(arguments):\n    print(sys.prefix, arguments)\n    return 3\n"
+    )
     command = [sys.executable, "-m", "autograder", "demo", "--remove"]
     for _ in range(2):  # the second time, the environment is there
         result = subprocess.run(command, cwd=root, capture_output=True, text=True)

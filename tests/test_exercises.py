@@ -7,12 +7,13 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from autograder.exercises import EXERCISES, PUBLIC_SEED, key
-from autograder.exercises.cases import either_sign, half_turn
 from scipy.spatial.transform import Rotation
 from transform_lab import Point, Pose, Quaternion, tft
 from transform_lab.check import call
 from transform_lab.verdict import TOLERANCE, agree, examine, parts_of
+
+from autograder.exercises import EXERCISES, PUBLIC_SEED, key
+from autograder.exercises.cases import either_sign, half_turn
 
 pytestmark = pytest.mark.filterwarnings("ignore:the matrix subclass")  # np.matrix, which students still use
 
@@ -210,7 +211,7 @@ def test_misconceptions_are_written_for_students(name):
     for misconception in misconceptions:
         assert misconception.id == misconception.id.lower().replace(" ", "-")
         for sentence in (misconception.says, misconception.hint):
-            assert sentence[0].isupper() or sentence[0] in "`\"*", sentence
+            assert sentence[0].isupper() or sentence[0] in '`"*', sentence
             assert sentence[-1] in ".?", sentence
 
 

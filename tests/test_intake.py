@@ -5,10 +5,11 @@ import json
 
 import nbformat
 import pytest
+from conftest import ROOT
+
 from autograder import intake as intake_module
 from autograder.course import Course
 from autograder.intake import restore
-from conftest import ROOT
 
 
 @pytest.fixture(scope="module")
@@ -51,7 +52,10 @@ def test_an_untouched_notebook_is_as_released(released, notebook):
         (b'{"nbformat": 99, "nbformat_minor": 0, "metadata": {}, "cells": []}', "not a Jupyter notebook"),
         (b'{"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": [{}]}', "not a Jupyter notebook"),
         (b'{"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": "x"}', "not a Jupyter notebook"),
-        (b'{"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": [{"cell_type": "code", "source": 1}]}', "not a Jup"),
+        (
+            b'{"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": [{"cell_type": "code", "source": 1}]}',
+            "not a Jup",
+        ),
     ],
 )
 def test_a_file_that_is_no_notebook_is_unreadable(released, content, reason):

@@ -10,17 +10,20 @@ import urllib.error
 import urllib.request
 
 import pytest
+from nbgrader.api import Gradebook
+from nbgrader.coursedir import CourseDirectory
+
 from autograder.course import ASSIGNMENT, Course
 from autograder.demo import enroll
 from autograder.gradebook import settings
-from nbgrader.api import Gradebook
-from nbgrader.coursedir import CourseDirectory
 
 
 def nbgrader(course, *arguments):
     """Run an nbgrader command in the course's root, as an instructor does."""
     command = [sys.executable, "-m", "nbgrader", *arguments]
-    return subprocess.run(command, cwd=course.root, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=1200)
+    return subprocess.run(
+        command, cwd=course.root, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=1200
+    )
 
 
 def marks(course):
@@ -49,7 +52,11 @@ def test_stock_nbgrader_gives_the_solutions_full_points(course, hand_in, solved)
     hand_in(course, "alice", solved)
     result = nbgrader(course, "autograde", ASSIGNMENT)
     assert result.returncode == 0, result.stderr
-    automatic = {cell: mark for cell, mark in marks(course).items() if isinstance(mark, tuple) and not cell[2].startswith("question")}
+    automatic = {
+        cell: mark
+        for cell, mark in marks(course).items()
+        if isinstance(mark, tuple) and not cell[2].startswith("question")
+    }
     assert len(automatic) == 16
     assert all(auto == most for auto, _, most, _ in automatic.values())
 
@@ -123,7 +130,15 @@ def formgrader(course, hand_in, solved, sandboxed):
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
-    command = [sys.executable, "-m", "jupyter_server", "--no-browser", f"--port={port}", "--port-retries=0", "--allow-root"]
+    command = [
+        sys.executable,
+        "-m",
+        "jupyter_server",
+        "--no-browser",
+        f"--port={port}",
+        "--port-retries=0",
+        "--allow-root",
+    ]
     command += ["--IdentityProvider.token=secret", "--ServerApp.disable_check_xsrf=True"]
     with open(course.root / "server.log", "w") as log:
         server = subprocess.Popen(command, cwd=course.root, stdout=log, stderr=log, stdin=subprocess.DEVNULL)
@@ -155,8 +170,15 @@ def test_the_formgraders_pages_answer_and_its_button_grades(course, formgrader):
     assert result["success"], result
     (submission,) = json.loads(page(formgrader, f"/formgrader/api/submissions/{ASSIGNMENT}"))
     assert submission["autograded"] and submission["code_score"] == 34
-    for path in ("manage_submissions/transforms", "gradebook", "gradebook/transforms", "gradebook/transforms/2_homogeneous_transforms"):
+    for path in (
+        "manage_submissions/transforms",
+        "gradebook",
+        "gradebook/transforms",
+        "gradebook/transforms/2_homogeneous_transforms",
+    ):
         assert "nbgrader formgrade" in page(formgrader, f"/formgrader/{path}"), path
-    (found,) = json.loads(page(formgrader, f"/formgrader/api/submitted_notebooks/{ASSIGNMENT}/2_homogeneous_transforms"))
+    (found,) = json.loads(
+        page(formgrader, f"/formgrader/api/submitted_notebooks/{ASSIGNMENT}/2_homogeneous_transforms")
+    )
     shown = page(formgrader, f"/formgrader/submissions/{found['id']}")
     assert "transform_to_pose: all right." in shown and "4 of 4 points" in shown

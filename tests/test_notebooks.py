@@ -2,13 +2,14 @@
 
 import nbformat
 import pytest
+from conftest import ROOT
+from nbclient import NotebookClient
+
 from autograder.check import check_files
 from autograder.course import Course
 from autograder.grading import Submission, assignment
 from autograder.intake import restore
 from autograder.judge import judge
-from conftest import ROOT
-from nbclient import NotebookClient
 
 SOLVED = sorted((ROOT / "source/transforms").glob("*.ipynb"))
 RELEASED = sorted((ROOT / "notebooks/transforms").glob("*.ipynb"))
@@ -26,10 +27,7 @@ def run_all(path):
 
 
 def text_of(cell):
-    return "\n".join(
-        output.get("text") or output.get("data", {}).get("text/plain", "")
-        for output in cell.outputs
-    )
+    return "\n".join(output.get("text") or output.get("data", {}).get("text/plain", "") for output in cell.outputs)
 
 
 def test_there_are_five():

@@ -5,10 +5,11 @@ import json
 
 import nbformat
 import pytest
+from conftest import ROOT
+
 from autograder.course import Course, CourseError
 from autograder.exercises import EXERCISES, key
 from autograder.release import public_key, release
-from conftest import ROOT
 
 
 def contents(folder):
@@ -17,7 +18,9 @@ def contents(folder):
 
 
 def test_notebooks_are_what_source_gives(released):
-    assert contents(ROOT / "notebooks" / "transforms") == contents(released.release), "run `python3 -m autograder release`"
+    assert contents(ROOT / "notebooks" / "transforms") == contents(released.release), (
+        "run `python3 -m autograder release`"
+    )
 
 
 def test_the_public_key_is_up_to_date():
@@ -39,7 +42,9 @@ def test_a_change_in_source_is_said(course):
 def test_a_source_without_a_test_cell_is_refused(course):
     path = course.source / "1_rotation.ipynb"
     notebook = nbformat.read(path, as_version=4)
-    notebook.cells = [cell for cell in notebook.cells if cell.metadata.get("nbgrader", {}).get("grade_id") != "is_rotation"]
+    notebook.cells = [
+        cell for cell in notebook.cells if cell.metadata.get("nbgrader", {}).get("grade_id") != "is_rotation"
+    ]
     nbformat.write(notebook, path)
     before = contents(course.release)
     with pytest.raises(CourseError, match="no test cell for: is_rotation"):
@@ -98,7 +103,11 @@ def test_no_solution_is_released():
     assert len(solutions()) > 20
     for path, content in contents(ROOT / "notebooks").items():
         text = content.decode("utf-8")
-        plain = "\n".join("".join(cell["source"]) for cell in json.loads(text)["cells"]) if path.endswith(".ipynb") else text
+        plain = (
+            "\n".join("".join(cell["source"]) for cell in json.loads(text)["cells"])
+            if path.endswith(".ipynb")
+            else text
+        )
         assert "BEGIN SOLUTION" not in plain, path
         found = [line for line in solutions() if line in plain]
         assert not found, (path, found)

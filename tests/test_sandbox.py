@@ -5,8 +5,9 @@ import time
 from pathlib import Path
 
 import pytest
-from autograder.sandbox import Ended, Limits, Sandbox
 from conftest import ROOT
+
+from autograder.sandbox import Ended, Limits, Sandbox
 
 PACKAGE = ROOT / "source/transforms/transform_lab"
 QUICK = Limits(cell=1.0, call=0.5, grace=0.5)
@@ -92,7 +93,9 @@ def test_a_call_that_changes_its_argument_shows_it(sandbox):
         assert reply.arguments == [[{"array": [2.0], "shape": [1]}], {}]
 
 
-@pytest.mark.parametrize("body", ["raise ValueError('no')", "raise SystemExit", "raise BaseException('hm')", "exit(1 / 0)"])
+@pytest.mark.parametrize(
+    "body", ["raise ValueError('no')", "raise SystemExit", "raise BaseException('hm')", "exit(1 / 0)"]
+)
 def test_a_call_that_raises_says_so(sandbox, body):
     with sandbox.notebook() as notebook:
         notebook.run_cell(f"def f():\n    {body}")
@@ -124,7 +127,9 @@ def test_a_cell_that_heeds_no_interrupt_is_stopped(sandbox):
     assert value(sandbox, "'next'") == "'next'"
 
 
-@pytest.mark.parametrize("cell", ["import os; os._exit(0)", "import os; os.abort()", "import os; os.kill(os.getpid(), 9)"])
+@pytest.mark.parametrize(
+    "cell", ["import os; os._exit(0)", "import os; os.abort()", "import os; os.kill(os.getpid(), 9)"]
+)
 def test_a_process_that_ends_itself_costs_nobody_else(sandbox, cell):
     with sandbox.notebook() as notebook:
         with pytest.raises(Ended) as ended:

@@ -8,7 +8,6 @@ import warnings
 
 import numpy as np
 import pytest
-
 from transform_lab import tft
 from transform_lab.messages import Point, Pose, Quaternion
 

@@ -6,7 +6,6 @@ import io
 import math
 import os
 import re
-import shutil
 import subprocess
 import sys
 from types import SimpleNamespace
@@ -14,7 +13,6 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from PIL import Image
-
 from transform_lab import page, picture, shapes
 from transform_lab.camera import Camera
 from transform_lab.markers import arrow_marker, axis_marker
@@ -340,24 +338,32 @@ def test_names_may_contain_slashes(viewer):
 
 # In a browser
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 FLAGS = (
     "--headless --no-sandbox --disable-gpu --disable-background-networking --disable-component-update --disable-sync"
     " --no-first-run --virtual-time-budget=8000 --window-size=800,500 --dump-dom"
 ).split()
 SOFTWARE_WEBGL = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-needs_chromium = pytest.mark.skipif(not CHROMIUM, reason="needs Chromium to open the page")
 
 
-def dom(text, folder, *flags):
-    """Return the elements that Chromium makes of a page."""
-    (folder / "page.html").write_text(text)
-    command = [CHROMIUM, *FLAGS, *flags, f"--user-data-dir={folder / 'profile'}", (folder / "page.html").as_uri()]
-    return subprocess.run(command, capture_output=True, text=True, timeout=60, check=True).stdout
+@pytest.fixture
+def dom(chromium, tmp_path):
+    """dom(text, *flags): the elements that Chromium makes of a page."""
+
+    def elements(text, *flags):
+        (tmp_path / "page.html").write_text(text)
+        command = [
+            chromium,
+            *FLAGS,
+            *flags,
+            f"--user-data-dir={tmp_path / 'profile'}",
+            (tmp_path / "page.html").as_uri(),
+        ]
+        return subprocess.run(command, capture_output=True, text=True, timeout=60, check=True).stdout
+
+    return elements
 
 
-@needs_chromium
-def test_the_page_draws_the_scene_as_seen_by_the_camera(viewer, tmp_path):
+def test_the_page_draws_the_scene_as_seen_by_the_camera(viewer, dom):
     viewer.add_point("</script><b>1", (1, 1, 1))
     nodes, grid, seen, _ = viewer._scene()
     camera = Camera(seen, ASPECT)
@@ -367,7 +373,7 @@ def test_the_page_draws_the_scene_as_seen_by_the_camera(viewer, tmp_path):
       const p = frames.c.object.position.clone().setFromMatrixPosition(frames.c.object.matrixWorld).project(v.camera);
       document.body.dataset.found = JSON.stringify({names: Object.keys(frames), place: [p.x, p.y]});
     }, 3000)</script></body>"""
-    elements = dom(page.render(nodes, grid, camera).replace("</body>", probe), tmp_path, *SOFTWARE_WEBGL)
+    elements = dom(page.render(nodes, grid, camera).replace("</body>", probe), *SOFTWARE_WEBGL)
     found = html.unescape(re.search(r'data-found="([^"]*)"', elements)[1])
     assert '"names":["a","b","c"]' in found
     x, y = camera.project(viewer.lookup("a", "c")[:3, 3])[0]
@@ -379,11 +385,10 @@ def test_the_page_draws_the_scene_as_seen_by_the_camera(viewer, tmp_path):
     assert sorted(map(html.unescape, labels)) == sorted(["X", "Y", "Z"] * 3 + ["a", "b", "c", "</script><b>1"])
 
 
-@needs_chromium
-def test_without_webgl_the_picture_remains(viewer, tmp_path):
-    elements = dom(viewer.html(), tmp_path, "--disable-3d-apis")
+def test_without_webgl_the_picture_remains(viewer, dom):
+    elements = dom(viewer.html(), "--disable-3d-apis")
     assert "<iframe" not in elements and 'src="data:image/png;base64,' in elements
-    with_webgl = dom(viewer.html(), tmp_path, *SOFTWARE_WEBGL)
+    with_webgl = dom(viewer.html(), *SOFTWARE_WEBGL)
     assert "<iframe" in with_webgl
     png = base64.b64decode(re.search(r'src="data:image/png;base64,([^"]+)"', elements)[1])
     assert Image.open(io.BytesIO(png)).width > 800

@@ -9,9 +9,7 @@ def _all():
     from importlib import import_module
 
     return {
-        exercise.name: exercise
-        for module in MODULES
-        for exercise in import_module(f"{__name__}.{module}").EXERCISES
+        exercise.name: exercise for module in MODULES for exercise in import_module(f"{__name__}.{module}").EXERCISES
     }
 
 

@@ -254,9 +254,7 @@ TRANSFORM_POSE = Exercise(
             "The position is right, but the orientation is 0, 0, 0, 1, which means no rotation.",
             "The pose is turned in B, and B is turned in A: both belong in the answer.",
         ),
-        Misconception(
-            "orientation-missing", _with_orientation(lambda a_T_b, pose_in_b: (0, 0, 0, 0)), *NO_ORIENTATION
-        ),
+        Misconception("orientation-missing", _with_orientation(lambda a_T_b, pose_in_b: (0, 0, 0, 0)), *NO_ORIENTATION),
         Misconception(
             "wrong-orientation",
             _with_orientation(lambda a_T_b, pose_in_b: quaternion(a_T_b[:3, :3])),

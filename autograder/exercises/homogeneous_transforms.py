@@ -196,9 +196,7 @@ HAND_TRANSFORM = Exercise(
             "Your hand is rolled the other way; the rotation is transposed.",
             "Where does your thumb point after the roll? Its direction in the first pose is a column, not a row.",
         ),
-        *(
-            Misconception("wrong-units", _hand(p=(length, 0, 0)), *WRONG_LENGTH) for length in (-10, -0.01, -1, -100)
-        ),
+        *(Misconception("wrong-units", _hand(p=(length, 0, 0)), *WRONG_LENGTH) for length in (-10, -0.01, -1, -100)),
         Misconception(
             "wrong-sign",
             _hand(p=(0.1, 0, 0)),

@@ -361,6 +361,7 @@ IS_ROTATION = Exercise(
 
 _OPPOSITE = np.array([-1.0, -1.0, -1.0, 1.0])  # times a quaternion: the opposite turn
 
+
 def same_rotation(q1, q2):
     return _close(q1, q2) or _close(q1, -q2)
 

@@ -26,7 +26,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Misconception:
-    """One way to get an exercise wrong, as code: `wrong` takes the exercise's arguments and answers as that student would."""
+    """One way to get an exercise wrong, as code: `wrong` answers the exercise's arguments as that student would."""
 
     id: str
     wrong: Callable
@@ -81,7 +81,8 @@ def _case(exercise, case):
         "kwargs": kwargs,
         "expected": expected,
         "wrong": [
-            None if answer != {"raises": True} and same(exercise.returns, answer, expected) else answer for answer in wrong
+            None if answer != {"raises": True} and same(exercise.returns, answer, expected) else answer
+            for answer in wrong
         ],
     }
 

@@ -30,7 +30,9 @@ REFUSED = (
 def problem():
     """None when sandboxes work on this machine; else what is wrong and what to do, in one line."""
     if sys.platform != "linux":
-        return f"bubblewrap needs Linux; this is {sys.platform}. Grade on a Linux machine, or in a Linux virtual machine."
+        return (
+            f"bubblewrap needs Linux; this is {sys.platform}. Grade on a Linux machine, or in a Linux virtual machine."
+        )
     if shutil.which("bwrap") is None:
         return INSTALL
     probe = subprocess.run([*command(Path("/nonexistent")), "true"], capture_output=True, text=True, timeout=20)
@@ -72,7 +74,7 @@ def command(package, megabytes=50):
         arguments += _bind(path, COURSE / "transforms" / package.name / path.name, made)
     arguments += ["--chdir", str(COURSE / "transforms"), "--"]
     if root:
-        # Without a user namespace of its own, root inside would still be root to every file: become nobody in particular.
+        # Without a user namespace of its own, root inside would still be root to every file: become nobody.
         number = str(100_000 + os.getpid() % 1_000_000)
         arguments += ["setpriv", "--reuid", number, "--regid", number, "--clear-groups"]
         arguments += ["--bounding-set=-all", "--inh-caps=-all", "--no-new-privs"]

@@ -12,13 +12,12 @@ import signal
 import sys
 import tempfile
 
+from IPython.core.display_trap import DisplayTrap
 from IPython.core.displayhook import DisplayHook
 from IPython.core.displaypub import DisplayPublisher
-from IPython.core.display_trap import DisplayTrap
 from IPython.core.error import StdinNotImplementedError
 from IPython.core.interactiveshell import InteractiveShell
 from traitlets import Any
-
 from transform_lab.check import call, one_line
 
 MOST_OUTPUT = 2_000_000  # bytes of output a notebook may make

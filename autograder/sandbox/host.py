@@ -180,7 +180,9 @@ class NotebookProcess:
         try:
             outputs = [dict(output) for output in reply["outputs"]]
             count = reply["execution_count"]
-            return CellRun(outputs, count if type(count) is int else None, reply["ended"] is True, reply["interrupted"] is True)
+            return CellRun(
+                outputs, count if type(count) is int else None, reply["ended"] is True, reply["interrupted"] is True
+            )
         except (KeyError, TypeError, ValueError) as error:
             raise self._ended("killed") from error
 

@@ -32,10 +32,9 @@ def main():
     sys.path.insert(0, "")  # as in Jupyter: modules beside the notebook
 
     # Loaded here, once for all notebooks: these modules are most of a notebook's start.
+    import executor  # noqa: F401
     import numpy.random  # noqa: F401
     import scipy.spatial.transform  # noqa: F401
-
-    import executor  # noqa: F401
 
     Channel(control).send({"ready": True})
     Worker(control, settings["isolated"]).serve()

@@ -28,7 +28,7 @@ def check(name, function):
     """Call `function` on the public cases of the exercise `name` and show what is right and what is not.
 
     A right function gets one green line. A stub that is not filled in yet says so calmly. Anything else shows what was
-    expected, what came, and the misconception behind it when exactly one explains every answer; then raises CheckFailed.
+    expected, what came, and the misconception behind it when exactly one explains all answers; then raises CheckFailed.
     """
     if os.environ.get("TRANSFORM_LAB_GRADING"):
         print(f"{name}: the grader calls this function itself.")

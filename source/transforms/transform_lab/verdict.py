@@ -6,7 +6,7 @@ called in another process), so a student and an instructor never see two opinion
 An exercise, as `examine` takes it, is a dictionary of plain data:
 
 - `returns`: "rotation", "transform", "pose", "coordinates" or "truth"; what the answer has to be
-- `credit`: {part of the answer: what that part alone is worth}, as shares of the exercise's points; all parts are worth 1
+- `credit`: {part of the answer: what that part alone is worth}, as shares of the points; all parts are worth 1
 - `misconceptions`: [{"id", "says", "hint"}, …]
 - `cases`: [{"family", "args", "kwargs", "expected", "wrong"}, …], where `wrong` holds what each misconception would
   answer: null where it happens to be right, {"raises": true} where it raises
@@ -40,9 +40,15 @@ WANTED = {
 # Failures that any exercise can have: what the answer shows, and what helps.
 GENERAL = {
     "returned-none": ("Your function returned None.", "Does every path through it end in a `return` with a value?"),
-    "wrong-type": ("Your function returned something of the wrong kind.", "Look at what the docstring says it returns."),
+    "wrong-type": (
+        "Your function returned something of the wrong kind.",
+        "Look at what the docstring says it returns.",
+    ),
     "wrong-shape": ("Your function returned an array of the wrong shape.", "Print the answer's `.shape` and compare."),
-    "not-finite": ("Your answer contains NaN or infinity.", "Look for a division by zero, or a root of a negative number."),
+    "not-finite": (
+        "Your answer contains NaN or infinity.",
+        "Look for a division by zero, or a root of a negative number.",
+    ),
     "input-mutated": (
         "Your function changed one of its arguments.",
         "Whoever called it still needs the original: work on a copy, or build a new object.",
@@ -172,7 +178,7 @@ def _compare(returns, case, reply):
 
 
 def parts_of(returns, answer):
-    """`answer` (decoded) as the parts of PARTS[returns], each a float64 array; raises Unfit when it is something else."""
+    """`answer` (decoded) as the parts of PARTS[returns], each a float64 array; raises Unfit when it is none."""
     if answer is None:
         raise Unfit("returned-none", "None")
     if returns == "truth":
@@ -273,7 +279,9 @@ def _credit(exercise, outcomes):
 def _constant(returns, cases, replies):
     """Whether a function of arguments answers the same to all of them."""
     values = [reply.value for reply in replies]
-    return len(cases) > 1 and all(reply.outcome == "returned" for reply in replies) and all(v == values[0] for v in values)
+    return (
+        len(cases) > 1 and all(reply.outcome == "returned" for reply in replies) and all(v == values[0] for v in values)
+    )
 
 
 def _diagnose(exercise, replies, outcomes):
@@ -304,7 +312,7 @@ def _diagnose(exercise, replies, outcomes):
 
 
 def _explains(index, exercise, replies, outcomes):
-    """Whether the answers equal this misconception's wherever it differs from the right one, and are right elsewhere."""
+    """Whether the answers equal this misconception's where it differs from the right one, and are right elsewhere."""
     differs = False
     for case, reply, outcome in zip(exercise["cases"], replies, outcomes):
         wrong = case["wrong"][index]
