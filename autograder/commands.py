@@ -303,4 +303,5 @@ def export(options):
 
 
 def test(options):
-    return subprocess.call([sys.executable, "-m", "pytest", *options.arguments])
+    everything = ["--numprocesses", str(os.cpu_count())]
+    return subprocess.call([sys.executable, "-m", "pytest", *(options.arguments or everything)])

@@ -22,7 +22,7 @@ def examine(course):
         (
             True,
             f"Limits: {limits.call:g} s a call, {limits.cell:g} s a cell, {limits.notebook:g} s a notebook, "
-            f"{limits.submission:g} s a submission; {limits.memory / 1e9:g} GB a process, {limits.processes} processes.",
+            f"{limits.submission:g} s a submission; {limits.memory / 1e9:g} GB a process, {limits.processes} of them.",
         ),
         (
             False,

@@ -75,11 +75,12 @@ def summary(found):
 
 def misunderstood(found):
     """Misconceptions, the most frequent first: (id, exercise, how many students, what the answer shows, the hint)."""
-    times = Counter((row.misconception, row.exercise) for rows in found.values() for row in rows if row.misconception)
+    rows = [row for rows in found.values() for row in rows if row.misconception]
+    times = Counter((identifier, row.exercise) for row in rows for identifier in row.misconception.split(";"))
     lines = []
-    for (ids, exercise), count in times.most_common():
+    for (identifier, exercise), count in times.most_common():
         sentences = {m.id: (m.says, m.hint) for m in EXERCISES[exercise].misconceptions}
-        lines.append((ids, exercise, count, *(GENERAL | sentences)[ids.split(";")[0]]))
+        lines.append((identifier, exercise, count, *(GENERAL | sentences)[identifier]))
     return lines
 
 

@@ -166,6 +166,9 @@ def test_class_covers_right_answers_and_shared_mistakes():
     assert set.union(*right.values()) == set(EXERCISES)
     assert all(right[student] == set(EXERCISES) for student in ("ada", "chloe", "devika", "oskar"))
     named = Counter((name, mistake) for of in found.values() for name in of for mistake in of[name].misconceptions)
-    assert named.most_common(1)[0][0] == ("waypoint", "base-frame-offset")
+    assert {exercise for (exercise, mistake), _ in named.most_common(2) if mistake == "base-frame-offset"} == {
+        "waypoint",
+        "pre_grasp",
+    }
     assert named["pre_grasp", "base-frame-offset"] >= 3
     assert len({name for name, mistake in named}) > len(EXERCISES) / 2

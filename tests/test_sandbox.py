@@ -1,7 +1,6 @@
 """The real sandbox: what a notebook's process can do, and what it cannot reach."""
 
 import os
-import time
 from pathlib import Path
 
 import pytest
@@ -10,7 +9,7 @@ from conftest import ROOT
 from autograder.sandbox import Ended, Limits, Sandbox
 
 PACKAGE = ROOT / "source/transforms/transform_lab"
-QUICK = Limits(cell=1.0, call=0.5, grace=0.5)
+QUICK = Limits(cell=4.0, call=2.0, grace=1.0)  # for loops to end soon; ample for the rest on a busy machine
 pytestmark = pytest.mark.usefixtures("sandboxed")
 
 
@@ -250,13 +249,11 @@ def test_forged_answers_are_passed_over(sandbox):
 
 
 def test_a_notebook_has_a_budget_of_time(sandbox):
-    with Sandbox(PACKAGE, limits=Limits(cell=5.0, notebook=1.0, grace=0.5)) as box:
+    with Sandbox(PACKAGE, limits=Limits(cell=60.0, notebook=2.0, grace=1.0)) as box:
         with box.notebook() as notebook:
-            start = time.monotonic()
-            assert notebook.run_cell("import time; time.sleep(4)").interrupted
+            assert notebook.run_cell("import time; time.sleep(50)").interrupted
             with pytest.raises(Ended):
                 notebook.run_cell("1")
-            assert time.monotonic() - start < 4
 
 
 def test_without_bubblewrap_the_same_code_runs_unprotected(sandbox):

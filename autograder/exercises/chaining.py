@@ -41,7 +41,7 @@ def chain_cases(rng):
     shuffled = [along_axes[index] for index in rng.permutation(24)]
     families = {
         "one or two transforms": [some(2), some(1), some(2), some(1)],
-        "two frames with axes along each other's axes": list(zip(shuffled[:12], shuffled[12:])),
+        "two frames, each turned by quarter turns": list(zip(shuffled[:12], shuffled[12:])),
         "three transforms": [some(3), some(3), some(3)],
         "four to six transforms": [some(4), some(5), some(6)],
         "frames far away and close by": [
@@ -85,6 +85,7 @@ CHAIN = Exercise(
             Misconception("transforms-left-out", wrong, *SOME_LEFT_OUT)
             for wrong in (
                 lambda *transforms: chain(*transforms[:2]),
+                lambda *transforms: transforms[0] @ transforms[1],  # fails for a single one
                 lambda *transforms: chain(*transforms[-2:]),
                 lambda *transforms: chain(transforms[0], transforms[-1]) if len(transforms) > 1 else transforms[0],
                 lambda *transforms: chain(np.eye(4), *transforms[1:]),
@@ -133,7 +134,7 @@ def transform_pose_cases(rng):
     shuffled = [along_axes[index] for index in rng.permutation(24)]
     first, second = rotation(rng), rotation(rng)
     families = {
-        "axes along each other's axes": [
+        "frames turned by quarter turns": [
             (transform(R, vector(rng)), pose(S, vector(rng))) for R, S in zip(shuffled[:12], shuffled[12:])
         ],
         "tilted frames": [(generic_transform(rng), generic_pose(rng)) for _ in range(4)],

@@ -32,7 +32,7 @@ EXAMPLE_1 = transform(rotation_about((0, 0, 1), math.pi / 4), (0, 0, 0.5))  # th
 def many_frames(rng):
     """{family: [(R, p), …]}: rotations of every kind, each with a translation that is not along its axis."""
     return {
-        "axes of B along axes of A": [(R, vector(rng)) for R in signed_permutations()],
+        "a frame turned by quarter turns": [(R, vector(rng)) for R in signed_permutations()],
         "a tilted frame": [(tilt(rng), vector(rng)), (rotation(rng), vector(rng)), (rotation(rng), vector(rng))],
         "a frame turned by more than 120 degrees": [(wide_turn(rng), vector(rng)) for _ in range(3)],
         "a half turn about a slanted axis": [(half_turn(rng), vector(rng)) for _ in range(3)],
@@ -57,7 +57,7 @@ def make_transform(R, p):
 
 def make_transform_cases(rng):
     families = {
-        "axes of B along axes of A": [(R, vector(rng)) for R in signed_permutations()],
+        "a frame turned by quarter turns": [(R, vector(rng)) for R in signed_permutations()],
         "a tilted frame": [(rotation(rng), vector(rng)), (tilt(rng), vector(rng)), (wide_turn(rng), vector(rng))],
         "a frame turned by a fraction of a degree": [
             (rotation_about(slanted_axis(rng), angle), vector(rng)) for angle in (1e-2, 1e-3)
@@ -529,7 +529,7 @@ def transform_point(a_T_b, p_in_b):
 def transform_point_cases(rng):
     x_axis, y_axis, z_axis = np.eye(3)
     families = {
-        "axes of B along axes of A": [(transform(R, vector(rng)), vector(rng)) for R in signed_permutations()],
+        "a frame turned by quarter turns": [(transform(R, vector(rng)), vector(rng)) for R in signed_permutations()],
         "a tilted frame": [
             (transform(R, vector(rng)), vector(rng)) for R in (tilt(rng), wide_turn(rng), half_turn(rng))
         ],

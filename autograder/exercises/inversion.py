@@ -53,7 +53,7 @@ def invert_transform(a_T_b):
 
 def invert_transform_cases(rng):
     families = {
-        "axes of B along axes of A": [transform(R, vector(rng)) for R in signed_permutations()],
+        "a frame turned by quarter turns": [transform(R, vector(rng)) for R in signed_permutations()],
         "a tilted frame": [generic_transform(rng), generic_transform(rng), transform(half_turn(rng), vector(rng))],
         "a frame turned by more than 120 degrees": [transform(wide_turn(rng), vector(rng)) for _ in range(2)],
         "a frame turned by a fraction of a degree": [
@@ -137,7 +137,7 @@ def relative_transform_cases(rng):
     shuffled = [along_axes[index] for index in rng.permutation(24)]
     R = rotation(rng)
     families = {
-        "axes along each other's axes": list(zip(shuffled[:12], shuffled[12:])),
+        "frames turned by quarter turns": list(zip(shuffled[:12], shuffled[12:])),
         "two tilted frames": [(generic_transform(rng), generic_transform(rng)) for _ in range(4)],
         "two frames turned by more than 120 degrees": [
             (transform(wide_turn(rng), vector(rng)), transform(wide_turn(rng), vector(rng))),
@@ -224,7 +224,7 @@ def object_in_gripper_cases(rng):
         "an object 1 m in front of the camera, as in the lab": [
             (generic_transform(rng), generic_transform(rng), in_front) for _ in range(3)
         ],
-        "camera and gripper with axes along each other's axes": [
+        "camera and gripper turned by quarter turns": [
             (camera, gripper, vector(rng)) for camera, gripper in zip(shuffled[:12], shuffled[12:])
         ],
         "a tilted camera and a tilted gripper": [

@@ -58,7 +58,7 @@ def _far(rng):
 
 def pre_grasp_cases(rng):
     return [
-        *(Case("axes of the object along axes of the base", (object_pose,)) for object_pose in _along_axes(rng)),
+        *(Case("an object turned by quarter turns", (object_pose,)) for object_pose in _along_axes(rng)),
         *(Case("an upright object, the lab's among them", (object_pose,)) for object_pose in _upright(rng)),
         *(Case("a tilted object", args) for args in zip(_tilted(rng), (0.25, 0.1, 0.05, 0.2))),
         *(Case("another distance", args) for args in zip(_tilted(rng), (0.25, 0.02, 1.0, 0.1))),
@@ -73,7 +73,7 @@ def pre_grasp_cases(rng):
 def waypoint_cases(rng):
     steps = np.array([[-0.1, 0.0, 0.0], [0.0, 0.05, 0.0], [0.1, 0.0, 0.2], [0.0, -0.2, 0.1]])
     return [
-        *(Case("axes of the object along axes of the base", (frame, vector(rng, 0.5))) for frame in _along_axes(rng)),
+        *(Case("an object turned by quarter turns", (frame, vector(rng, 0.5))) for frame in _along_axes(rng)),
         *(Case("an upright object, the lab's among them", args) for args in zip(_upright(rng), steps)),
         *(Case("a tilted object", (object_pose, vector(rng, 0.3))) for object_pose in _tilted(rng)),
         *(Case("a step along one axis of a tilted object", args) for args in zip(_tilted(rng), 0.1 * np.eye(3))),

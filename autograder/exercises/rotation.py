@@ -135,7 +135,7 @@ def rotation_from_axes(x_axis, y_axis):
 
 def from_axes_cases(rng):
     families = {
-        "axes of B along axes of A": signed_permutations(),
+        "a frame turned by quarter turns": signed_permutations(),
         "a frame turned about one axis of A": [
             rotation_about(axis, sign * rng.uniform(0.3, 1.3)) for axis in np.eye(3) for sign in (1, -1)
         ],

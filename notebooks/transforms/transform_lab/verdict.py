@@ -64,6 +64,10 @@ GENERAL = {
 }
 
 
+TRY_BY_HAND = "Call it yourself, in a cell of its own, with arguments of the kind that the docstring describes."
+NOT_DEFINED = "Each notebook starts empty: is that name defined in this one, in a cell above?"
+
+
 @dataclass
 class Reply:
     """What came of one call: `outcome` is "returned", "raised", "not done", "undefined", "timeout" or "killed"."""
@@ -118,20 +122,20 @@ def examine(name, exercise, call):
         if reply.outcome not in ("returned", "raised"):
             return _unfinished(name, reply, case)
     outcomes = [_compare(returns, case, reply) for case, reply in zip(cases, replies)]
-    right = [outcome.right for outcome in outcomes]
-
     verdict = Verdict(name, cases=len(cases), credit=_credit(exercise, outcomes))
     verdict.parts = {part: sum(part in outcome.parts for outcome in outcomes) for part in PARTS[returns]}
-    if all(right):
+    if all(outcome.right for outcome in outcomes):
         return verdict
-    first = right.index(False)
-    verdict.failing = cases[first]
-    verdict.answer = codec.decode(replies[first].value) if replies[first].outcome == "returned" else None
     if all(reply.outcome == "raised" for reply in replies):
         verdict.status = "error"
     if _constant(returns, cases, replies):
         verdict.credit = 0.0
     verdict.misconceptions, verdict.says, verdict.hint = _diagnose(exercise, replies, outcomes)
+    for case, reply, outcome in zip(cases, replies, outcomes):
+        if not outcome.answered:  # there is none when calls only changed their arguments
+            verdict.failing = case
+            verdict.answer = codec.decode(reply.value) if reply.outcome == "returned" else None
+            break
     return verdict
 
 
@@ -154,27 +158,31 @@ def _unfinished(name, reply, case):
 @dataclass
 class _Outcome:
     parts: frozenset = frozenset()  # the parts of the answer that are right
-    right: bool = False
+    answered: bool = False  # all of them are
     problem: tuple | None = None  # (id of a general misconception, what came), when nothing could be compared
     unnormalised: bool = False  # right but for the quaternion's length
+    mutated: bool = False  # the call changed its arguments, which costs the case
+
+    @property
+    def right(self):
+        return self.answered and not self.mutated
 
 
 def _compare(returns, case, reply):
     if reply.outcome == "raised":
         return _Outcome(problem=("", reply.error))
-    if reply.arguments != [case["args"], case["kwargs"]]:
-        return _Outcome(problem=("input-mutated", ""))
+    mutated = reply.arguments != [case["args"], case["kwargs"]]
     expected = parts_of(returns, codec.decode(case["expected"]))
     try:
         got = parts_of(returns, codec.decode(reply.value))
     except Unfit as unfit:
-        return _Outcome(problem=(unfit.misconception, str(unfit)))
+        return _Outcome(problem=(unfit.misconception, str(unfit)), mutated=mutated)
     good = frozenset(part for part in PARTS[returns] if agree(part, got[part], expected[part]))
     unnormalised = False
     if good == {"position"} and np.linalg.norm(got["orientation"]) > TOLERANCE:
         unit = got["orientation"] / np.linalg.norm(got["orientation"])
         unnormalised = agree("orientation", unit, expected["orientation"])
-    return _Outcome(good, len(good) == len(PARTS[returns]), unnormalised=unnormalised)
+    return _Outcome(good, len(good) == len(PARTS[returns]), unnormalised=unnormalised, mutated=mutated)
 
 
 def parts_of(returns, answer):
@@ -270,7 +278,7 @@ def _credit(exercise, outcomes):
         families.setdefault(case["family"], []).append(outcome)
     earned = 0.0
     for members in families.values():
-        shared = frozenset.intersection(*(member.parts for member in members))
+        shared = frozenset.intersection(*(frozenset() if member.mutated else member.parts for member in members))
         complete = all(member.right for member in members)
         earned += 1.0 if complete else sum(exercise["credit"].get(part, 0.0) for part in shared)
     return earned / len(families)
@@ -285,10 +293,17 @@ def _constant(returns, cases, replies):
 
 
 def _diagnose(exercise, replies, outcomes):
+    """What `_explain` finds in the answers; that a call changed its arguments comes first, and hides nothing else."""
+    ids, says, hint = _explain(exercise, replies, outcomes)
+    if not any(outcome.mutated for outcome in outcomes):
+        return ids, says, hint
+    spoilt, advice = GENERAL["input-mutated"]
+    return ("input-mutated", *ids), f"{spoilt} {says}".strip(), f"{advice} {hint}".strip()
+
+
+def _explain(exercise, replies, outcomes):
     """(ids, says, hint): a misconception only when exactly one explanation fits all the answers."""
     problems = [outcome.problem for outcome in outcomes if outcome.problem]
-    if any(problem[0] == "input-mutated" for problem in problems):
-        return ("input-mutated",), *GENERAL["input-mutated"]
     fitting = [
         misconception
         for index, misconception in enumerate(exercise["misconceptions"])
@@ -301,10 +316,13 @@ def _diagnose(exercise, replies, outcomes):
         (identifier, what), times = Counter(problems).most_common(1)[0]
         if not identifier:
             where = "" if times == len(outcomes) else f" in {times} of {len(outcomes)} cases"
-            return (), f"Your function raised an error{where}: {what}", "Run it on this case in a cell of its own."
+            undefined = what.startswith("NameError")
+            return (), f"Your function raised an error{where}: {what}", NOT_DEFINED if undefined else TRY_BY_HAND
         says, hint = GENERAL[identifier]
         return (identifier,), f"{says[:-1]}: {what}." if what and identifier != "returned-none" else says, hint
-    if all(outcome.right or outcome.unnormalised for outcome in outcomes):
+    if all(outcome.answered for outcome in outcomes):
+        return (), "", ""
+    if all(outcome.answered or outcome.unnormalised for outcome in outcomes):
         return ("not-normalised",), *GENERAL["not-normalised"]
     if _constant(exercise["returns"], exercise["cases"], replies):
         return ("hard-coded",), *GENERAL["hard-coded"]
@@ -317,7 +335,7 @@ def _explains(index, exercise, replies, outcomes):
     for case, reply, outcome in zip(exercise["cases"], replies, outcomes):
         wrong = case["wrong"][index]
         if wrong is None:
-            if not outcome.right:
+            if not outcome.answered:
                 return False
             continue
         differs = True

@@ -19,7 +19,7 @@ def title(verdict):
         return f"{verdict.exercise}: all right."
     if not verdict.done:
         return f"{verdict.exercise}: not done yet."
-    if len(verdict.parts) > 1 and any(verdict.parts.values()):
+    if len(verdict.parts) > 1 and 0 < sum(verdict.parts.values()) < len(verdict.parts) * verdict.cases:
         found = [f"{part} {_how_often(verdict, part)}" for part in verdict.parts]
         return f"{verdict.exercise}: not right yet ({', '.join(found)})."
     return f"{verdict.exercise}: not right yet."

@@ -1,0 +1,203 @@
+"""What a student sees of `check`: right, wrong, not done, and every way to call it wrongly; as text and as HTML."""
+
+import re
+
+import numpy as np
+import pytest
+from transform_lab import Point, Pose, Quaternion, check, once_done, panel, tft
+from transform_lab.check import CheckFailed, call
+from transform_lab.verdict import Reply, Verdict, examine
+
+from autograder.exercises import EXERCISES
+
+
+@pytest.fixture
+def said(capsys):
+    return lambda: capsys.readouterr().out
+
+
+def to_pose(matrix):
+    return Pose(Point(*matrix[:3, 3]), Quaternion(*tft.quaternion_from_matrix(matrix)))
+
+
+def failing(name, function, said):
+    """What check prints about a wrong function, and the line it fails with."""
+    with pytest.raises(CheckFailed) as failure:
+        check(name, function)
+    assert failure.value._render_traceback_() == [str(failure.value)]
+    return said(), str(failure.value)
+
+
+def test_a_right_answer_gets_one_line(said):
+    check("transform_to_pose", to_pose)
+    assert said() == "transform_to_pose: all right.\n"
+
+
+def test_a_stub_is_not_done_yet_and_does_not_fail(said):
+    def stub(matrix):
+        raise NotImplementedError
+
+    check("transform_to_pose", stub)
+    assert said() == "transform_to_pose: not done yet.\n0 of 4 points\n"
+
+
+def test_a_wrong_answer_shows_what_is_right_what_was_expected_and_the_misconception(said):
+    def w_first(matrix):
+        x, y, z, w = tft.quaternion_from_matrix(matrix)
+        return Pose(Point(*matrix[:3, 3]), Quaternion(w, x, y, z))
+
+    text, line = failing("transform_to_pose", w_first, said)
+    assert line.startswith("transform_to_pose: not right yet (position right, orientation ")
+    assert "in another order than ROS's" in text
+    for label in ("argument 1", "expected", "yours", "position", "orientation", "x ", "w ", "2 of 4 points"):
+        assert label in text
+    assert "distance between the positions: 0 m" in text
+    assert "angle between the orientations: " in text and " degrees" in text
+
+
+def test_small_readable_numbers(said):
+    text, _ = failing("rotation_about_z", lambda degrees: np.eye(3) * 0.123456789 - 1e-17, said)
+    assert "0.1235" in text and "0.12345" not in text
+    assert not re.search(r"-0\.?[\s\]]|\de-", text)
+
+
+@pytest.mark.parametrize(
+    "answer, misconception, words",
+    [
+        (None, "returned-none", "returned None"),
+        ("text", "wrong-type", "a str instead of a Pose"),
+        (np.eye(4), "wrong-type", "an array of shape (4, 4) instead of a Pose"),
+        (Pose(Point(0, 0, 0), np.zeros(4)), "wrong-type", "orientation.x"),
+        (Pose(Point(np.eye(2), 0, 0), Quaternion(0, 0, 0, 1)), "wrong-type", "position.x"),
+        (Pose(Point(float("nan"), 0, 0), Quaternion(0, 0, 0, 1)), "not-finite", "NaN"),
+    ],
+)
+def test_answers_of_another_kind_are_named(said, answer, misconception, words):
+    text, _ = failing("transform_to_pose", lambda matrix: answer, said)
+    assert words in text and "0 of 4 points" in text
+    verdict = examine("transform_to_pose", public("transform_to_pose"), lambda a, k: call(lambda matrix: answer, a, k))
+    assert verdict.misconceptions == (misconception,)
+
+
+def public(name):
+    from autograder.exercises import PUBLIC_SEED, key
+
+    return key(EXERCISES[name], PUBLIC_SEED)
+
+
+def test_wrong_shapes_are_named(said):
+    text, _ = failing("make_transform", lambda R, p: np.eye(3), said)
+    assert "an array of shape (3, 3)" in text
+
+
+def test_an_error_of_the_students_is_shown_in_one_line(said):
+    def wrong(matrix):
+        return undefined_name  # noqa: F821
+
+    text, _ = failing("transform_to_pose", wrong, said)
+    assert "NameError: name 'undefined_name' is not defined" in text
+    assert "Each notebook starts empty" in text
+    assert "Traceback" not in text
+
+
+def test_a_changed_argument_is_said_beside_what_else_is_wrong(said):
+    def right_but_spoils(matrix):
+        pose = to_pose(matrix)
+        matrix[0, 3] += 1
+        return pose
+
+    text, line = failing("transform_to_pose", right_but_spoils, said)
+    assert "changed one of its arguments" in text and "expected" not in text
+    assert line == "transform_to_pose: not right yet."
+
+    def base_frame_and_spoils(object_pose, distance=0.1):
+        object_pose.position.x -= distance
+        return object_pose
+
+    verdict = examine("pre_grasp", public("pre_grasp"), lambda a, k: call(base_frame_and_spoils, a, k))
+    assert verdict.misconceptions == ("input-mutated", "base-frame-offset")
+    assert verdict.credit == 0.0
+
+
+def test_the_call_instead_of_the_function(said):
+    with pytest.raises(CheckFailed, match=r'without parentheses: check\("make_transform", make_transform\)'):
+        check("make_transform", np.eye(4))
+
+
+def test_an_exercise_that_does_not_exist():
+    with pytest.raises(CheckFailed, match="no exercise called 'transform_to_poze'; there are rotation_about_z, "):
+        check("transform_to_poze", to_pose)
+
+
+def test_the_key_is_missing(monkeypatch, tmp_path):
+    import sys
+
+    module = sys.modules["transform_lab.check"]
+    monkeypatch.setattr(module, "KEY", tmp_path / "key.json")
+    module._key.cache_clear()
+    with pytest.raises(CheckFailed, match="fetch the assignment's folder again"):
+        check("transform_to_pose", to_pose)
+    module._key.cache_clear()
+
+
+def test_while_grading_check_has_no_opinion(said, monkeypatch):
+    monkeypatch.setenv("TRANSFORM_LAB_GRADING", "1")
+    check("transform_to_pose", lambda matrix: None)
+    assert said() == "transform_to_pose: the grader calls this function itself.\n"
+
+
+def test_once_done(said):
+    with once_done("chain"):
+        print("the picture")
+    assert said() == "the picture\n"
+    with once_done("chain"):
+        raise NotImplementedError
+    assert said() == "This part appears once chain is done.\n"
+    with once_done("chain"):
+        raise ValueError("no\nmatrix")
+    assert said() == "This part appears once chain is right; now it stops with ValueError: no matrix\n"
+
+
+def test_html_escapes_what_students_write():
+    def wrong(matrix):
+        raise ValueError("<script>alert(1)</script>")
+
+    verdict = examine("transform_to_pose", public("transform_to_pose"), lambda a, k: call(wrong, a, k))
+    assert "<script>" not in panel.html(verdict)
+    assert "&lt;script&gt;" in panel.html(verdict)
+
+
+def test_feedback_on_hidden_cases_has_no_numbers():
+    hidden = EXERCISES["transform_to_pose"]
+    verdict = examine("transform_to_pose", public("transform_to_pose"), lambda a, k: call(lambda m: Pose(), a, k))
+    assert verdict.failing is not None and hidden
+    for render in (panel.text, panel.html):
+        shown = render(verdict, numbers=False)
+        assert f"Kind of case: {verdict.failing['family']}." in shown
+        assert "expected" not in shown and "argument 1" not in shown
+
+
+@pytest.mark.parametrize(
+    "outcome, status, words",
+    [
+        ("timeout", "timeout", "did not finish in time"),
+        ("killed", "killed", "used too much"),
+        ("undefined", "error", "There is no function called chain"),
+        ("not done", "error", "Not done yet"),
+    ],
+)
+def test_what_ends_an_examination(outcome, status, words):
+    calls = []
+
+    def answer(args, kwargs):
+        calls.append(args)
+        return Reply(outcome)
+
+    verdict = examine("chain", public("chain"), answer)
+    assert (verdict.status, verdict.credit, len(calls)) == (status, 0.0, 1)
+    assert words in verdict.says
+
+
+def test_a_verdict_is_right_only_with_all_the_credit():
+    assert Verdict("chain", credit=1.0).right
+    assert not Verdict("chain", credit=0.99).right
