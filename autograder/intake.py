@@ -56,8 +56,7 @@ def _parse(content):
     if len(content) > LARGEST:
         raise Unreadable(f"it has {len(content) / 1e6:.0f} MB; at most {LARGEST / 1e6:.0f} MB are accepted")
     try:
-        # NaN and Infinity, which some libraries write into outputs, are no JSON; outputs are dropped below.
-        raw = json.loads(content.decode("utf-8"), parse_constant=lambda name: None)
+        raw = json.loads(content.decode("utf-8"))
     except (UnicodeDecodeError, RecursionError, ValueError) as error:
         raise Unreadable(f"it is not JSON ({_short(error)})") from error
     try:

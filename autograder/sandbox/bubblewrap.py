@@ -48,7 +48,7 @@ def command(package, megabytes=50):
     megabytes: the size of each writable folder.
     """
     root = os.getuid() == 0
-    arguments = ["bwrap", "--die-with-parent", "--new-session", "--clearenv"]
+    arguments = [shutil.which("bwrap"), "--die-with-parent", "--new-session", "--clearenv"]
     arguments += ["--unshare-ipc", "--unshare-pid", "--unshare-net", "--unshare-uts", "--unshare-cgroup-try"]
     if not root:
         arguments += ["--unshare-user"]

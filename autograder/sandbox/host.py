@@ -1,7 +1,6 @@
 """The grader's side of a sandbox: start it, run a notebook's cells in it, call the notebook's functions."""
 
 import base64
-import os
 import secrets
 import socket
 import subprocess
@@ -112,11 +111,11 @@ class Sandbox:
         environment = {"OPENBLAS_NUM_THREADS": "1", "PATH": "/usr/bin:/bin", "LANG": "C.UTF-8", "HOME": "/tmp"}
         environment |= {"TRANSFORM_LAB_GRADING": "1", "MPLBACKEND": "module://matplotlib_inline.backend_inline"}
         if not self.isolated:
-            environment = {**os.environ, **environment, "HOME": self.folder.name}
+            environment["HOME"] = self.folder.name
         # The errors of the worker itself (a Python that does not start) are this machine's, and worth reading.
         self.errors = tempfile.TemporaryFile()
         self.process = subprocess.Popen(
-            [*arguments, start], stdin=inside, stdout=self.errors, stderr=self.errors, cwd=folder, env=environment
+            [*arguments, start], stdin=inside, stdout=self.errors, stderr=self.errors, cwd=folder
         )
         inside.close()
         settings = {
