@@ -4,6 +4,7 @@ The marks are those that nbgrader's own SaveAutoGrades would record from the sam
 student instead of one for each cell.
 """
 
+import copy
 import csv
 import io
 import shutil
@@ -14,13 +15,12 @@ import nbformat
 from nbgrader import utils
 from nbgrader.api import Gradebook, MissingEntry
 from nbgrader.coursedir import CourseDirectory
-from nbgrader.preprocessors import AssignLatePenalties
+from nbgrader.preprocessors import AssignLatePenalties, SaveCells
 from sqlalchemy.exc import OperationalError
 from traitlets.config import PyFileConfigLoader
 
-from .course import ASSIGNMENT, CourseError
+from .course import ASSIGNMENT
 
-RELEASE = "Run `python3 -m autograder release` first."
 PATIENCE = 60.0  # seconds to wait for a database that somebody else has locked
 
 
@@ -37,14 +37,12 @@ class Writer:
         self.db_url = CourseDirectory(config=self.config).db_url
 
     def __enter__(self):
-        if self.db_url.startswith("sqlite") and not self.course.gradebook.exists():
-            raise CourseError(f"{ASSIGNMENT} was never released here: there is no gradebook.db. {RELEASE}")
+        released = self.course.notebooks  # raises CourseError when there are none, before a gradebook is made
         self.gradebook = Gradebook(self.db_url)
         try:
             self.gradebook.find_assignment(ASSIGNMENT)
         except MissingEntry:
-            self.gradebook.close()
-            raise CourseError(f"{ASSIGNMENT} was never released: the gradebook does not know it. {RELEASE}") from None
+            self._register(released)
         return self
 
     def __exit__(self, *_):
@@ -128,6 +126,16 @@ class Writer:
         book.db.commit()
         if submission.total_seconds_late > 0:
             self._penalize(graded)
+
+    def _register(self, released):
+        """A gradebook that does not know the assignment (a fresh clone) learns it from the released notebooks.
+
+        This is the step of nbgrader's generate_assignment that fills the gradebook; the notebooks stay as they are.
+        """
+        self.gradebook.update_or_create_assignment(ASSIGNMENT)
+        for name, notebook in released.items():
+            resources = {"notebook": name, "assignment": ASSIGNMENT, "db_url": self.db_url}
+            SaveCells(config=self.config).preprocess(copy.deepcopy(notebook.notebook), {"nbgrader": resources})
 
     def _timestamp(self, student):
         path = self.course.submitted(student) / "timestamp.txt"

@@ -95,6 +95,7 @@ def test_lists_in_lists_end_somewhere():
         {"array": [None], "shape": [1]},
         {"array": "ab", "shape": [2]},
         {"array": [0.0] * (LARGEST_ARRAY + 1), "shape": [LARGEST_ARRAY + 1]},
+        {"array": [0.0] * 2 * LARGEST_ARRAY, "shape": [2, LARGEST_ARRAY]},
         {"array": [], "shape": [0, 10**9]},
         {"float": "1.0"},
         {"float": "nan", "more": 1},

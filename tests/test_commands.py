@@ -14,6 +14,7 @@ import pytest
 
 from autograder.course import Course
 from autograder.exercises import EXERCISES
+from autograder.gradebook import Writer
 
 
 def run(course, *arguments, path=None):
@@ -121,53 +122,30 @@ def test_a_notebook_of_another_name_is_said(course, hand_in, solved, sandboxed):
     assert set(statuses(course, "alice").values()) == {"missing"}
 
 
-def test_statuses_of_what_does_not_end(course, hand_in, solved, sandboxed):
-    def with_answer(name, exercise, source):
-        notebook = nbformat.read(solved[name], as_version=4)
-        next(
-            c for c in notebook.cells if c.metadata.get("nbgrader", {}).get("grade_id") == f"{exercise}-solution"
-        ).source = source
-        return notebook
-
-    hand_in(
-        course,
-        "loop",
-        {"1_rotation": with_answer("1_rotation", "same_rotation", "def same_rotation(a, b):\n    while True: pass")},
+@pytest.mark.parametrize(
+    "student, body, verdict",
+    [
+        ("loop", "while True: pass", ("timeout", "")),
+        ("exits", "import os; os._exit(0)", ("killed", "")),
+        ("raises", "return undefined", ("error", "")),
+        ("prints", "print(degrees)", ("graded", "returned-none")),
+    ],
+)
+def test_an_answer_that_does_not_end_well_costs_itself_alone(
+    course, hand_in, solved, sandboxed, student, body, verdict
+):
+    notebook = nbformat.read(solved["1_rotation"], as_version=4)
+    (cell,) = (
+        c for c in notebook.cells if c.metadata.get("nbgrader", {}).get("grade_id") == "rotation_about_z-solution"
     )
-    hand_in(
-        course,
-        "exits",
-        {
-            "1_rotation": with_answer(
-                "1_rotation", "same_rotation", "def same_rotation(a, b):\n    import os; os._exit(0)"
-            )
-        },
-    )
-    hand_in(
-        course,
-        "raises",
-        {"1_rotation": with_answer("1_rotation", "same_rotation", "def same_rotation(a, b):\n    return undefined")},
-    )
-    hand_in(
-        course,
-        "none",
-        {"1_rotation": with_answer("1_rotation", "same_rotation", "def same_rotation(a, b):\n    print(a == b)")},
-    )
+    cell.source = f"def rotation_about_z(degrees):\n    {body}"
+    hand_in(course, student, {"1_rotation": notebook})
     code, said = run(course, "grade", "--no-feedback")
     assert code == 0, said
-    wrong = {
-        row["student"]: (row["status"], row["misconception"])
-        for row in verdicts(course)
-        if row["exercise"] == "same_rotation"
-    }
-    assert wrong == {
-        "loop": ("timeout", ""),
-        "exits": ("killed", ""),
-        "raises": ("error", ""),
-        "none": ("graded", "returned-none"),
-    }
-    for student in wrong:
-        assert sum(scores(course, student).values()) == 6, student
+    row = next(row for row in verdicts(course) if row["exercise"] == "rotation_about_z")
+    assert (row["status"], row["misconception"]) == verdict
+    assert scores(course, student)["rotation_about_z"] == 0
+    assert sum(scores(course, student).values()) == 5
 
 
 def test_no_submitted_folder(course, sandboxed):
@@ -176,21 +154,35 @@ def test_no_submitted_folder(course, sandboxed):
     assert "There is no submitted/ folder" in said and "submitted/STUDENT/transforms/" in said
 
 
-@pytest.mark.parametrize("what", ["gradebook", "assignment", "notebooks"])
-def test_an_assignment_that_was_never_released(course, hand_in, solved, sandboxed, what):
+@pytest.mark.parametrize("gradebook", [True, False])
+def test_an_assignment_that_was_never_released(course, hand_in, solved, sandboxed, gradebook):
     hand_in(course, "alice", solved)
-    if what == "gradebook":
+    shutil.rmtree(course.release)
+    if not gradebook:
         course.gradebook.unlink()
-    elif what == "notebooks":
-        shutil.rmtree(course.release)
-    else:
-        from autograder.gradebook import Writer
-
-        with Writer(course) as writer:
-            writer.gradebook.remove_assignment("transforms")
     code, said = run(course, "grade")
     assert code == 2
     assert "never released" in said and "python3 -m autograder release" in said
+    assert course.gradebook.exists() is gradebook
+
+
+def test_a_gradebook_that_is_gone_is_made_from_the_released_notebooks(course, hand_in, solved, sandboxed):
+    hand_in(course, "alice", {"1_rotation": solved["1_rotation"]})
+    made_by_nbgrader = assignment_in(course)
+    assert len(made_by_nbgrader) > 35
+    course.gradebook.unlink()
+    code, said = run(course, "grade", "--no-feedback")
+    assert code == 0, said
+    assert assignment_in(course) == made_by_nbgrader
+    assert "alice,7.0,40.0" in run(course, "export")[1]
+
+
+def assignment_in(course):
+    """All that the gradebook knows of the assignment's cells, but for its own keys."""
+    with Writer(course) as writer:
+        notebooks = writer.gradebook.find_assignment("transforms").notebooks
+        cells = [cell.to_dict() for notebook in notebooks for cell in (*notebook._base_cells, *notebook.source_cells)]
+    return sorted((sorted((k, str(v)) for k, v in cell.items() if k != "id") for cell in cells), key=str)
 
 
 def test_outside_a_course(course, tmp_path):
