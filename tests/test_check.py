@@ -49,7 +49,7 @@ def test_a_wrong_answer_shows_what_is_right_what_was_expected_and_the_misconcept
     text, line = failing("transform_to_pose", w_first, said)
     assert line.startswith("transform_to_pose: not right yet (position right, orientation ")
     assert "in another order than ROS's" in text
-    for label in ("argument 1", "expected", "yours", "position", "orientation", "x ", "w ", "2 of 4 points"):
+    for label in ("  matrix:", "expected", "yours", "position", "orientation", "x ", "w ", "2 of 4 points"):
         assert label in text
     assert "distance between the positions: 0 m" in text
     assert "angle between the orientations: " in text and " degrees" in text
@@ -174,7 +174,7 @@ def test_feedback_on_hidden_cases_has_no_numbers():
     for render in (panel.text, panel.html):
         shown = render(verdict, numbers=False)
         assert f"Kind of case: {verdict.failing['family']}." in shown
-        assert "expected" not in shown and "argument 1" not in shown
+        assert "expected" not in shown and "matrix:" not in shown
 
 
 @pytest.mark.parametrize(

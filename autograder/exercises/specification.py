@@ -6,6 +6,7 @@ the diagnosis in feedback and report, and the tests that prove the grader.
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from inspect import signature
 
 import numpy as np
 from transform_lab import codec
@@ -63,6 +64,7 @@ def key(exercise, seed):
     """The exercise with the cases drawn from `seed`, as the plain data that `transform_lab.verdict.examine` takes."""
     cases = exercise.cases(np.random.default_rng(seed))
     return {
+        "parameters": [p.name for p in signature(exercise.reference).parameters.values() if p.kind != p.VAR_POSITIONAL],
         "returns": exercise.returns,
         "credit": exercise.credit,
         "misconceptions": [{"id": m.id, "says": m.says, "hint": m.hint} for m in exercise.misconceptions],

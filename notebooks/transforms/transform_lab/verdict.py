@@ -5,6 +5,7 @@ called in another process), so a student and an instructor never see two opinion
 
 An exercise, as `examine` takes it, is a dictionary of plain data:
 
+- `parameters`: the names of the function's parameters
 - `returns`: "rotation", "transform", "pose", "coordinates" or "truth"; what the answer has to be
 - `credit`: {part of the answer: what that part alone is worth}, as shares of the points; all parts are worth 1
 - `misconceptions`: [{"id", "says", "hint"}, …]
@@ -96,6 +97,7 @@ class Verdict:
     hint: str = ""  # what helps
     parts: dict = field(default_factory=dict)  # part of the answer: number of cases in which it is right
     cases: int = 0
+    parameters: tuple = ()  # names of the function's parameters, to show a case by
     failing: dict | None = None  # the first case that is not right
     answer: object = None  # the student's answer to it, decoded
 
@@ -123,6 +125,7 @@ def examine(name, exercise, call):
             return _unfinished(name, reply, case)
     outcomes = [_compare(returns, case, reply) for case, reply in zip(cases, replies)]
     verdict = Verdict(name, cases=len(cases), credit=_credit(exercise, outcomes))
+    verdict.parameters = tuple(exercise["parameters"])
     verdict.parts = {part: sum(part in outcome.parts for outcome in outcomes) for part in PARTS[returns]}
     if all(outcome.right for outcome in outcomes):
         return verdict

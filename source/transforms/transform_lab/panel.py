@@ -47,7 +47,7 @@ def html(verdict, points=None, numbers=True):
     lines += [f"<div>{escape(sentence)}</div>" for sentence in _sentences(verdict, points)]
     example = "\n".join(_example(verdict, numbers))
     if example:
-        lines.append(f'<pre style="margin:6px 0;white-space:pre-wrap">{escape(example)}</pre>')
+        lines.append(f'<pre style="margin:6px 0;white-space:pre-wrap;font-family:monospace">{escape(example)}</pre>')
     return "\n".join([*lines, "</div>"])
 
 
@@ -74,7 +74,9 @@ def _example(verdict, numbers):
         return [f"Kind of case: {case['family']}."]
     lines = [f"For example, {case['family']}:"]
     for position, plain in enumerate(case["args"]):
-        lines += _labelled(f"  argument {position + 1}", codec.decode(plain))
+        named = position < len(verdict.parameters)
+        label = verdict.parameters[position] if named else f"argument {position + 1}"
+        lines += _labelled(f"  {label}", codec.decode(plain))
     for keyword, plain in case["kwargs"].items():
         lines += _labelled(f"  {keyword}", codec.decode(plain))
     lines += _labelled("  expected", codec.decode(case["expected"]))
