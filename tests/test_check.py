@@ -100,6 +100,62 @@ def test_an_error_of_the_students_is_shown_in_one_line(said):
     assert "Traceback" not in text
 
 
+def test_errors_are_counted_whatever_their_message(said):
+    def wrong(matrix):
+        raise ValueError(f"no {matrix[0, 3]}")
+
+    text, _ = failing("transform_to_pose", wrong, said)
+    assert "Your function raised an error: ValueError: no " in text
+
+    def wrong_sometimes(matrix):
+        return wrong(matrix) if matrix[0, 0] < -0.5 else to_pose(matrix)
+
+    text, _ = failing("transform_to_pose", wrong_sometimes, said)
+    assert re.search(r"raised an error in \d+ of 41 cases", text)
+
+
+def test_the_forgotten_fourth_coordinate_is_explained(said):
+    text, _ = failing("transform_point", lambda a_T_b, p_in_b: a_T_b @ p_in_b, said)
+    assert "what belongs in the fourth place?" in text
+
+
+def test_what_is_printed_while_checking_is_not_shown_but_known(said):
+    text, _ = failing("transform_point", lambda a_T_b, p_in_b: print("here:", p_in_b), said)
+    assert "here:" not in text and "only `return` hands it" in text
+
+
+def test_a_call_of_another_stub_is_no_stub(said):
+    def invert_transform(a_T_b):
+        raise NotImplementedError
+
+    text, _ = failing("relative_transform", lambda a_T_b, a_T_c: invert_transform(a_T_b) @ a_T_c, said)
+    assert "raised an error: NotImplementedError" in text and "works by itself" in text
+
+
+def test_an_interrupted_check_says_so(said):
+    def endless(*transforms):
+        raise KeyboardInterrupt
+
+    text, _ = failing("chain", endless, said)
+    assert "interrupted before it was done" in text and "loop that never ends" in text
+
+
+def test_an_exercise_without_arguments_does_not_show_its_answer(said):
+    text, _ = failing("hand_transform", lambda: np.eye(4), said)
+    assert "yours" in text and "expected" not in text
+
+
+def test_answers_that_look_alike_show_how_far_apart_they_are(said):
+    rotation = EXERCISES["rotation_about_z"].reference
+    text, _ = failing("rotation_about_z", lambda degrees: rotation(degrees).round(4), said)
+    assert re.search(r"largest difference between two numbers: [1-5]e-05", text)
+
+
+def test_a_name_without_quotes(said):
+    with pytest.raises(CheckFailed, match="name in quotes first"):
+        check(to_pose, to_pose)
+
+
 def test_a_changed_argument_is_said_beside_what_else_is_wrong(said):
     def right_but_spoils(matrix):
         pose = to_pose(matrix)

@@ -76,6 +76,9 @@ CHAIN = Exercise(
         ),
         Misconception("elementwise-product", lambda *transforms: reduce(np.multiply, transforms), *ENTRY_BY_ENTRY),
         Misconception(
+            "elementwise-product", lambda *transforms: reduce(np.multiply, transforms, np.eye(4)), *ENTRY_BY_ENTRY
+        ),
+        Misconception(
             "offset-not-rotated",
             _rotations_and_translations_apart,
             "The rotations were multiplied and the translations added, each by themselves.",

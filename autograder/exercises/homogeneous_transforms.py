@@ -37,7 +37,7 @@ def many_frames(rng):
         "a frame turned by more than 120 degrees": [(wide_turn(rng), vector(rng)) for _ in range(3)],
         "a half turn about a slanted axis": [(half_turn(rng), vector(rng)) for _ in range(3)],
         "almost a half turn": [(near_half_turn(rng, short), vector(rng)) for short in (1e-2, 3e-3, 1e-3)],
-        "the lab's Example 1, and turns by a fraction of a degree": [
+        "Example 1, and turns by a fraction of a degree": [
             (EXAMPLE_1[:3, :3], EXAMPLE_1[:3, 3]),
             *((rotation_about(slanted_axis(rng), angle), vector(rng)) for angle in (1e-2, 1e-3)),
         ],
@@ -81,7 +81,7 @@ BOTTOM_ROW = (
 )
 TRANSLATION_BELOW = (
     "The translation stands in the bottom row.",
-    "The translation vector is a column. In which corner of the matrix does the lab put it?",
+    "The translation vector is a column. In which corner of the matrix does it stand?",
 )
 ROWS_FOR_COLUMNS = (
     "The rotation is transposed: B's axes stand in its rows.",
@@ -132,7 +132,7 @@ MAKE_TRANSFORM = Exercise(
             "wrong-shape",
             lambda R, p: make_transform(R, p)[:3],
             "You returned a 3x4 matrix: rotation and translation are right, the bottom row is missing.",
-            "A homogeneous transform has four rows; the lab says which four numbers the last one always holds.",
+            "A homogeneous transform has four rows; the last one always holds the same four numbers.",
         ),
         Misconception(
             "wrong-shape",
@@ -330,7 +330,7 @@ QUATERNION_ORDER = (
 )
 QUATERNION_TURNED = (
     "The orientation is the opposite turn: the rotation was transposed, or the quaternion conjugated.",
-    "Check it with the lab's Example 1: for a turn by +45 degrees about z, which sign has z when w is positive?",
+    "Check it with Example 1: for a turn by +45 degrees about z, which sign has z when w is positive?",
 )
 BREAKS_AT_HALF_TURN = (
     "The quaternion goes wrong at or near a half turn.",
@@ -351,7 +351,7 @@ ANGLES_AS_QUATERNION = (
 )
 POSITION_LEFT_OUT = (
     "The orientation is right, but the position is 0, 0, 0.",
-    "Where in the matrix does the lab put the translation? Look at the row and the column you read it from.",
+    "Where in the matrix does the translation stand? Look at the row and the column you read it from.",
 )
 YAW_ALONE = (
     "Your orientation turns about z only; roll and pitch are lost.",
@@ -375,7 +375,7 @@ TRANSFORM_TO_POSE = Exercise(
                 _to_pose_with(orientation=lambda matrix, order=order: quaternion(matrix[:3, :3])[order]),
                 *QUATERNION_ORDER,
             )
-            for order in ([3, 0, 1, 2], [3, 2, 1, 0])
+            for order in ([3, 0, 1, 2], [1, 2, 3, 0], [3, 2, 1, 0])
         ),
         Misconception(
             "rotation-transposed",
@@ -533,7 +533,7 @@ def transform_point_cases(rng):
         "a tilted frame": [
             (transform(R, vector(rng)), vector(rng)) for R in (tilt(rng), wide_turn(rng), half_turn(rng))
         ],
-        "the lab's Example 1, and the tips of B's other axes": [
+        "Example 1, and the tips of B's other axes": [
             (EXAMPLE_1, x_axis),
             (transform(rotation(rng), vector(rng)), y_axis),
             (transform(tilt(rng), vector(rng)), z_axis),
@@ -553,7 +553,7 @@ def _homogeneous(p):
 
 ENTRY_BY_ENTRY = (
     "Your product multiplies entry by entry.",
-    "`*` is not the matrix product in NumPy; the lab says how to multiply matrices.",
+    "`*` is not the matrix product in NumPy. Which operator is?",
 )
 IN_THE_WRONG_ORDER = (
     "Rotation and translation were applied in the wrong order, or from the wrong side.",

@@ -120,7 +120,7 @@ INVERT_TRANSFORM = Exercise(
             "elementwise-inverse",
             lambda a_T_b: a_T_b**-1,
             "Every entry was inverted by itself, and 1/0 is infinite.",
-            "`**` works entry by entry in NumPy. Look among the functions of `np.linalg` or `tft`.",
+            "`**` works entry by entry in NumPy. Look among the functions of `np.linalg`.",
         ),
     ),
 )
@@ -221,7 +221,7 @@ def object_in_gripper_cases(rng):
     shuffled = [along_axes[index] for index in rng.permutation(24)]
     in_front = np.array([1.0, 0.0, 0.0])
     families = {
-        "an object 1 m in front of the camera, as in the lab": [
+        "an object 1 m in front of the camera": [
             (generic_transform(rng), generic_transform(rng), in_front) for _ in range(3)
         ],
         "camera and gripper turned by quarter turns": [
@@ -259,6 +259,16 @@ OBJECT_IN_GRIPPER = Exercise(
             for wrong in (
                 lambda camera, gripper, p: _apply(gripper @ _inv(camera), p),
                 lambda camera, gripper, p: _apply(_inv(camera) @ gripper, p),
+            )
+        ),
+        *(
+            Misconception(
+                "wrong-transform-inverted",
+                wrong,
+                "You inverted both transforms.",
+                "Write the frames' names under your product: which of the two transforms points the right way already?",
+            )
+            for wrong in (
                 lambda camera, gripper, p: _apply(_inv(gripper) @ _inv(camera), p),
                 lambda camera, gripper, p: _apply(_inv(camera) @ _inv(gripper), p),
             )

@@ -59,7 +59,7 @@ def _far(rng):
 def pre_grasp_cases(rng):
     return [
         *(Case("an object turned by quarter turns", (object_pose,)) for object_pose in _along_axes(rng)),
-        *(Case("an upright object, the lab's among them", (object_pose,)) for object_pose in _upright(rng)),
+        *(Case("an upright object, the notebook's among them", (object_pose,)) for object_pose in _upright(rng)),
         *(Case("a tilted object", args) for args in zip(_tilted(rng), (0.25, 0.1, 0.05, 0.2))),
         *(Case("another distance", args) for args in zip(_tilted(rng), (0.25, 0.02, 1.0, 0.1))),
         *(
@@ -74,7 +74,7 @@ def waypoint_cases(rng):
     steps = np.array([[-0.1, 0.0, 0.0], [0.0, 0.05, 0.0], [0.1, 0.0, 0.2], [0.0, -0.2, 0.1]])
     return [
         *(Case("an object turned by quarter turns", (frame, vector(rng, 0.5))) for frame in _along_axes(rng)),
-        *(Case("an upright object, the lab's among them", args) for args in zip(_upright(rng), steps)),
+        *(Case("an upright object, the notebook's among them", args) for args in zip(_upright(rng), steps)),
         *(Case("a tilted object", (object_pose, vector(rng, 0.3))) for object_pose in _tilted(rng)),
         *(Case("a step along one axis of a tilted object", args) for args in zip(_tilted(rng), 0.1 * np.eye(3))),
         *(
@@ -110,10 +110,21 @@ def _yaw_of_quaternion(object_pose, offset):
     return pose_of(position(object_pose) + _yaw(2.0 * math.atan2(z, w)) @ offset, (x, y, z, w))
 
 
-def _with_quaternion_read(order):
+def _with_quaternion_read(order, copied):
+    """Reads the object's quaternion in another order; its orientation is copied, or made from what was read."""
+
     def wrong(object_pose, offset):
-        R = Rotation.from_quat(orientation(object_pose)[order]).as_matrix()
-        return pose_of(position(object_pose) + R @ offset, orientation(object_pose))
+        read = orientation(object_pose)[order]
+        R = Rotation.from_quat(read).as_matrix()
+        return pose_of(position(object_pose) + R @ offset, orientation(object_pose) if copied else read)
+
+    return wrong
+
+
+def _with_quaternion_written(order):
+    def wrong(object_pose, offset):
+        right = waypoint(object_pose, offset)
+        return pose_of(position(right), orientation(right)[order])
 
     return wrong
 
@@ -134,7 +145,7 @@ SHARED = [
         "wrong-sign",
         _moved(lambda p, R, offset: p - R @ offset),
         "The answer lies on the opposite side of the object.",
-        "The object's frame tells which side is which: does a point behind it have a positive or a negative x there?",
+        "The object's frame tells which side is which: in which direction does its x axis point?",
     ),
     (
         "rotation-transposed",
@@ -192,11 +203,16 @@ SHARED = [
     *(
         (
             "quaternion-order",
-            _with_quaternion_read(order),
-            "The numbers of the object's quaternion were read in another order than ROS's.",
+            wrong,
+            f"The numbers of the quaternion were {done} in another order than ROS's.",
             "Which comes first in `tf.transformations`, and which last: is w at the front or at the end?",
         )
         for order in ([3, 0, 1, 2], [1, 2, 3, 0], [3, 2, 1, 0])
+        for done, wrong in (
+            ("read", _with_quaternion_read(order, copied=True)),
+            ("read", _with_quaternion_read(order, copied=False)),
+            ("written", _with_quaternion_written(order)),
+        )
     ),
 ]
 

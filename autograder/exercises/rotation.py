@@ -335,11 +335,17 @@ IS_ROTATION = Exercise(
             "You check that each axis has length 1, but not that the axes are at right angles.",
             "Try your function on three unit vectors that lean towards each other.",
         ),
-        Misconception(
-            "elementwise-product",
-            lambda R: _close(R * R.T, np.eye(3)),
-            "Your product of two matrices multiplies entry by entry.",
-            "`*` is not the matrix product in NumPy; the lab says how to multiply matrices.",
+        *(
+            Misconception(
+                "elementwise-product",
+                wrong,
+                "Your product of two matrices multiplies entry by entry.",
+                "`*` is not the matrix product in NumPy. Which operator is?",
+            )
+            for wrong in (
+                lambda R: _close(R * R.T, np.eye(3)),
+                lambda R: _close(R * R.T, np.eye(3)) and _close(np.linalg.det(R), 1.0),
+            )
         ),
         *(
             Misconception(

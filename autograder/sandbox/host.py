@@ -191,15 +191,16 @@ class NotebookProcess:
             reply = self._request("call", [name, args, kwargs], self.limits.call)
         except Ended as ended:
             return Reply(ended.status)
-        outcome, error = reply.get("outcome"), reply.get("error", "")
+        outcome, error, printed = reply.get("outcome"), reply.get("error", ""), reply.get("printed", "")
         try:
             codec.decode(reply.get("value"))
-            if outcome not in ("returned", "raised", "not done", "undefined", "timeout") or not isinstance(error, str):
+            known = outcome in ("returned", "raised", "not done", "undefined", "timeout")
+            if not known or not isinstance(error, str) or not isinstance(printed, str):
                 raise codec.NotPlain("an unknown outcome")
         except codec.NotPlain:
             self.gone = True  # no executor of ours writes that
             return Reply("killed")
-        return Reply(outcome, reply.get("value"), reply.get("arguments"), error[:300])
+        return Reply(outcome, reply.get("value"), reply.get("arguments"), error[:300], printed[:300])
 
     def _request(self, action, arguments, seconds):
         nonce = secrets.token_hex(16)

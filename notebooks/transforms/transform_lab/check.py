@@ -4,16 +4,18 @@ The cases come from key.json beside this file: arguments, the right answers, and
 give. It holds numbers only; there is no solution in it to find. The grader uses other cases, in another process.
 """
 
+import io
 import json
 import os
 import sys
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stdout
 from functools import cache
 from pathlib import Path
 
 from . import codec, panel
-from .verdict import Reply, examine
+from .verdict import LOOP, Reply, Verdict, examine
 
+MOST_PRINTED = 200  # characters of what a function prints while it is checked
 KEY = Path(__file__).with_name("key.json")
 
 
@@ -33,10 +35,15 @@ def check(name, function):
     if os.environ.get("TRANSFORM_LAB_GRADING"):
         print(f"{name}: the grader calls this function itself.")
         return
+    if not isinstance(name, str):
+        raise CheckFailed('check takes the exercise\'s name in quotes first: check("chain", chain)')
     exercise = _exercise(name)
     if not callable(function):
         raise CheckFailed(f'check takes the function itself, without parentheses: check("{name}", {name})')
-    verdict = examine(name, exercise, lambda args, kwargs: call(function, args, kwargs))
+    try:
+        verdict = examine(name, exercise, lambda args, kwargs: call(function, args, kwargs))
+    except KeyboardInterrupt:
+        verdict = Verdict(name, "timeout", says="Your function was interrupted before it was done.", hint=LOOP)
     points = round(verdict.credit * exercise["points"], 2), exercise["points"]
     _show(verdict, points)
     if verdict.done and not verdict.right:
@@ -57,14 +64,24 @@ def once_done(name):
 def call(function, args, kwargs):
     """The Reply of `function` to plain arguments: fresh objects for each call, and what became of them after it."""
     args, kwargs = [codec.decode(arg) for arg in args], {key: codec.decode(arg) for key, arg in kwargs.items()}
+    printed = io.StringIO()
     try:
-        value = function(*args, **kwargs)
-    except NotImplementedError:
-        return Reply("not done")
+        with redirect_stdout(printed):
+            value = function(*args, **kwargs)
     except Exception as error:
+        if isinstance(error, NotImplementedError) and _raised_in(function, error):
+            return Reply("not done")
         return Reply("raised", error=one_line(error))
     after = [[codec.encode(arg) for arg in args], {key: codec.encode(arg) for key, arg in kwargs.items()}]
-    return Reply("returned", codec.encode(value), after)
+    return Reply("returned", codec.encode(value), after, printed=printed.getvalue()[:MOST_PRINTED])
+
+
+def _raised_in(function, error):
+    """Whether the function itself raised the error, and none that it calls."""
+    step = error.__traceback__
+    while step.tb_next is not None:
+        step = step.tb_next
+    return step.tb_frame.f_code is getattr(function, "__code__", step.tb_frame.f_code)
 
 
 def one_line(error):
@@ -120,7 +137,7 @@ class _Points:
         self.earned, self.most = earned, most
 
     def _repr_mimebundle_(self, include=None, exclude=None):
-        note = f'<span style="color:#555555">{self.earned:g} of {self.most:g} points with these cases</span>'
+        note = f"<span>{self.earned:g} of {self.most:g} points with these cases</span>"
         return {"text/plain": f"{self.earned:g}", "text/html": note}
 
 

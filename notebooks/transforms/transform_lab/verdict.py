@@ -13,6 +13,7 @@ An exercise, as `examine` takes it, is a dictionary of plain data:
   answer: null where it happens to be right, {"raises": true} where it raises
 """
 
+import re
 from collections import Counter
 from dataclasses import dataclass, field
 
@@ -65,8 +66,17 @@ GENERAL = {
 }
 
 
+LOOP = "Look for a loop that never ends, or a function that calls itself for ever."
 TRY_BY_HAND = "Call it yourself, in a cell of its own, with arguments of the kind that the docstring describes."
-NOT_DEFINED = "Each notebook starts empty: is that name defined in this one, in a cell above?"
+PRINT_IS_NOT_RETURN = "`print` shows a value to you; only `return` hands it to whoever called the function."
+ADVICE = (  # for errors whose message says little to a beginner: (pattern, what helps)
+    (r"^NameError", "Each notebook starts empty: is that name defined in this one, in a cell above?"),
+    (r"^NotImplementedError", "Write this one from NumPy and tft, so that it works by itself."),
+    (
+        r"size 3 is different from 4|\(4,4\) and \(3,\) not aligned",
+        "A point has three numbers, a 4x4 matrix takes four: what belongs in the fourth place?",
+    ),
+)
 
 
 @dataclass
@@ -77,6 +87,7 @@ class Reply:
     value: object = None  # the answer, as plain data
     arguments: object = None  # the positional and keyword arguments after the call, as plain data: [list, dict]
     error: str = ""  # the student's own error, in one line
+    printed: str = ""  # the beginning of what it printed
 
 
 @dataclass
@@ -149,8 +160,7 @@ def _unfinished(name, reply, case):
         hint = "Run the cell that defines it, and keep its name as it was."
         return Verdict(name, "error", says=f"There is no function called {name}.", hint=hint)
     if reply.outcome == "timeout":
-        hint = "Look for a loop that never ends, or a function that calls itself for ever."
-        return Verdict(name, "timeout", says="Your function did not finish in time.", hint=hint, failing=case)
+        return Verdict(name, "timeout", says="Your function did not finish in time.", hint=LOOP, failing=case)
     hint = "Look for a loop or a list that grows without end."
     return Verdict(name, "killed", says="Your function had to be stopped: it used too much.", hint=hint, failing=case)
 
@@ -316,11 +326,14 @@ def _explain(exercise, replies, outcomes):
         ids = tuple(dict.fromkeys(misconception["id"] for misconception in fitting))
         return ids, fitting[0]["says"], fitting[0]["hint"]
     if problems:
-        (identifier, what), times = Counter(problems).most_common(1)[0]
+        identifier, times = Counter(identifier for identifier, _ in problems).most_common(1)[0]
+        what = next(what for problem, what in problems if problem == identifier)
         if not identifier:
             where = "" if times == len(outcomes) else f" in {times} of {len(outcomes)} cases"
-            undefined = what.startswith("NameError")
-            return (), f"Your function raised an error{where}: {what}", NOT_DEFINED if undefined else TRY_BY_HAND
+            hint = next((advice for pattern, advice in ADVICE if re.search(pattern, what)), TRY_BY_HAND)
+            return (), f"Your function raised an error{where}: {what}", hint
+        if identifier == "returned-none" and any(reply.printed for reply in replies):
+            return (identifier,), "Your function printed something, but returned None.", PRINT_IS_NOT_RETURN
         says, hint = GENERAL[identifier]
         return (identifier,), f"{says[:-1]}: {what}." if what and identifier != "returned-none" else says, hint
     if all(outcome.answered for outcome in outcomes):

@@ -250,7 +250,7 @@ class Viewer:
         lengths = sorted({frame.length or length for frame in self._frames.values()})
         caption = (
             f"Fixed frame {self.fixed_frame}. Axes {' or '.join(f'{v:g}' for v in lengths)} m long: X red, Y green,"
-            f" Z blue. Grid at z = 0, squares of {step:g} m."
+            f" Z blue. Grid at z = 0, squares of {step:g} m. Drag to turn, scroll to zoom."
         )
         return nodes + markers, grid, seen, caption
 

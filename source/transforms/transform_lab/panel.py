@@ -3,6 +3,7 @@
 With `numbers=False` (feedback on the grader's hidden cases) the kind of case is named, never its numbers.
 """
 
+import re
 from html import escape
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from . import codec
 from .verdict import Unfit, parts_of
 
-COLOURS = {"right": "#1b7837", "wrong": "#b2500b", "waiting": "#555555"}
+COLOURS = {"right": "#1b7837", "wrong": "#d9690f", "waiting": "#888888"}  # of bar and mark, on white and on black
 
 
 def title(verdict):
@@ -43,12 +44,17 @@ def html(verdict, points=None, numbers=True):
     colour = COLOURS["right" if verdict.right else "wrong" if verdict.done else "waiting"]
     mark = "✓" if verdict.right else "✗" if verdict.done else "…"
     lines = [f'<div style="border-left:4px solid {colour};padding:2px 12px;margin:4px 0">']
-    lines.append(f'<strong style="color:{colour}">{mark} {escape(title(verdict))}</strong>')
-    lines += [f"<div>{escape(sentence)}</div>" for sentence in _sentences(verdict, points)]
+    lines.append(f'<strong><span style="color:{colour}">{mark}</span> {escape(title(verdict))}</strong>')
+    lines += [f"<div>{_code(escape(sentence))}</div>" for sentence in _sentences(verdict, points)]
     example = "\n".join(_example(verdict, numbers))
     if example:
         lines.append(f'<pre style="margin:6px 0;white-space:pre-wrap;font-family:monospace">{escape(example)}</pre>')
     return "\n".join([*lines, "</div>"])
+
+
+def _code(text):
+    """`code` in a sentence, as HTML."""
+    return re.sub(r"`([^`]+)`", r"<code>\1</code>", text)
 
 
 def _how_often(verdict, part):
@@ -79,7 +85,8 @@ def _example(verdict, numbers):
         lines += _labelled(f"  {label}", codec.decode(plain))
     for keyword, plain in case["kwargs"].items():
         lines += _labelled(f"  {keyword}", codec.decode(plain))
-    lines += _labelled("  expected", codec.decode(case["expected"]))
+    if case["args"] or case["kwargs"]:  # without arguments, the expected answer is the solution
+        lines += _labelled("  expected", codec.decode(case["expected"]))
     if verdict.answer is not None:
         lines += _labelled("  yours", verdict.answer)
         lines += _difference(verdict.answer, codec.decode(case["expected"]))
@@ -87,12 +94,15 @@ def _example(verdict, numbers):
 
 
 def _difference(got, expected):
-    """A pose's errors as a distance and an angle, which say more than digits."""
+    """A pose's errors as a distance and an angle, which say more than digits; an array's as its largest one."""
+    if isinstance(got, np.ndarray) and isinstance(expected, np.ndarray) and got.shape == expected.shape:
+        return [f"  largest difference between two numbers: {np.abs(got - expected).max():.1g}"]
     try:
         one, other = parts_of("pose", got), parts_of("pose", expected)
     except Unfit:
         return []
-    lines = [f"  distance between the positions: {np.linalg.norm(one['position'] - other['position']):.4g} m"]
+    distance = np.linalg.norm(one["position"] - other["position"])
+    lines = [f"  distance between the positions: {round(distance, 9):.4g} m"]
     lengths = np.linalg.norm(one["orientation"]) * np.linalg.norm(other["orientation"])
     if lengths > 0:
         cosine = min(1.0, abs(float(one["orientation"] @ other["orientation"])) / lengths)
