@@ -1,36 +1,38 @@
-"""`python3 -m autograder check`: one student's files, without a course's folders or a gradebook."""
+"""`python3 -m autograder check`: one student's files, without submitted/ or a gradebook."""
 
 from transform_lab import panel
 
-from .grading import Submission, assignment, new_seed
+from .grading import Submission, assignment, grade_notebook, new_seed
 from .intake import restore
-from .judge import judge, rows
+from .judge import rows
 
 
 def check_files(course, paths, seed=None, isolated=True):
-    """Grade notebook files: ([(Row, what was found in words), …], [what is wrong with the files]).
+    """Grade notebook files: ([(Row, what was found in words), …], [files that cannot be graded], [what was mended]).
 
     Python files beside the first notebook, which it may import, come along; the students' package is the course's own.
     """
     against = assignment(course, new_seed() if seed is None else seed, isolated=isolated)
-    found, problems = [], []
-    fine = [path for path in paths if path.is_file() and path.stem in course.notebooks]
-    for path in (path for path in paths if path not in fine):
-        names = ", ".join(f"{name}.ipynb" for name in course.notebooks)
-        wrong = (
-            f"no notebook of this assignment has that name; there are {names}"
-            if path.is_file()
-            else "there is no such file"
-        )
-        problems.append(f"{path}: {wrong}.")
+    found, refused, mended, fine = [], [], [], {}
+    for path in paths:
+        if not path.is_file():
+            refused.append(f"{path}: there is no such file.")
+        elif path.stem not in course.notebooks:
+            names = ", ".join(f"{name}.ipynb" for name in course.notebooks)
+            refused.append(f"{path}: no notebook of this assignment has that name; there are {names}.")
+        elif path.stem in fine:
+            refused.append(f"{path}: left out; {fine[path.stem]} is the same notebook.")
+        else:
+            fine[path.stem] = path
     if not fine:
-        return found, problems
-    beside = {path.name: path.read_bytes() for path in sorted(fine[0].parent.glob("*.py"))}
-    with against.sandbox(Submission("", beside)) as sandbox:
-        for path in fine:
-            released = course.notebooks[path.stem]
+        return found, refused, mended
+    folder = next(iter(fine.values())).parent
+    submission = Submission("", {path.name: path.read_bytes() for path in sorted(folder.glob("*.py"))})
+    with against.sandbox(submission) as sandbox:
+        for name, path in fine.items():
+            released = course.notebooks[name]
             intake = restore(path.read_bytes(), released)
-            verdicts = judge(intake, released, against.keys, sandbox)
-            problems += intake.problems
+            verdicts = grade_notebook(intake, released, against, sandbox, submission)
+            mended += intake.problems
             found += [(row, panel.summary(verdicts[row.exercise])) for row in rows(released, verdicts)]
-    return found, problems
+    return found, refused, mended

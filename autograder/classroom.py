@@ -1,38 +1,67 @@
-"""Many submissions at once: a pool of processes grades, one writer records, what is unchanged is left alone."""
+"""Many submissions at once: a pool of processes grades, one writer records, what is unchanged is left alone.
 
-import itertools
+Nothing that one student hands in may stop the others: whatever goes wrong with a submission is said, and the rest goes on.
+"""
+
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
 
 from .grading import collect, grade_submission, recorded
 
-AHEAD = 4  # submissions for each worker that are read in advance; keeps the grader's memory small
+AHEAD = 2  # submissions for each worker that are read in advance
 
 
 def grade_class(course, students, assignment, writer, jobs, force=False):
     """Grade and record; yields (student, Graded or None when unchanged, what went wrong or None) as they are done."""
     known = writer.students()
-    with ProcessPoolExecutor(jobs, initializer=_start, initargs=(assignment,)) as pool:
-        waiting, running = iter(students), {}
-        while True:
-            for student in itertools.islice(waiting, AHEAD * jobs - len(running)):
-                submission = collect(course, student)
-                if not force and student in known and _unchanged(course, submission, assignment):
-                    yield student, None, None
-                else:
-                    running[pool.submit(_grade, submission)] = student
-            if not running:
-                if (student := next(waiting, None)) is None:
-                    return
-                waiting = itertools.chain([student], waiting)
-                continue
-            for future in wait(running, return_when=FIRST_COMPLETED).done:
-                student = running.pop(future)
-                error = future.exception()
-                if error is not None:
-                    yield student, None, " ".join(str(error).split()) or type(error).__name__
+    pool, running = _pool(assignment, jobs), {}
+    try:
+        for student in [*students, None]:  # None: all are on their way
+            if student is not None:
+                try:
+                    submission = collect(course, student)
+                    unchanged = not force and student in known and _unchanged(course, submission, assignment)
+                except OSError as error:
+                    yield student, None, _words(error)
                     continue
-                writer.record(future.result())
-                yield student, future.result(), None
+                if unchanged:
+                    yield student, None, None
+                    continue
+                running[pool.submit(_grade, submission)] = submission
+            while running and (student is None or len(running) >= AHEAD * jobs):
+                done = wait(running, return_when=FIRST_COMPLETED).done
+                if any(isinstance(future.exception(), BrokenProcessPool) for future in done):
+                    # One of these brought a worker down: graded one by one, only that one fails.
+                    pool.shutdown()
+                    suspects, running = list(running.values()), {}
+                    for submission in suspects:
+                        with _pool(assignment, 1) as alone:
+                            future = alone.submit(_grade, submission)
+                            wait([future])
+                        yield _record(writer, submission.student, future)
+                    pool = _pool(assignment, jobs)
+                    continue
+                for future in done:
+                    yield _record(writer, running.pop(future).student, future)
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def _record(writer, student, future):
+    error = future.exception()
+    if isinstance(error, BrokenProcessPool):
+        return student, None, "its grading process ended all of a sudden; is there enough memory?"
+    if error is not None:
+        return student, None, _words(error)
+    try:
+        writer.record(future.result())
+    except Exception as error:  # a full disk, a locked database, …: said for this student, and tried again next time
+        return student, None, _words(error)
+    return student, future.result(), None
+
+
+def _words(error):
+    return f"{type(error).__name__}: {' '.join(str(error).split())}"[:300]
 
 
 def _unchanged(course, submission, assignment):
@@ -45,7 +74,11 @@ def _unchanged(course, submission, assignment):
     )
 
 
-_assignment = None  # in a worker process: what it grades against, sent once
+_assignment = None  # in a worker process: what it grades against, sent once; None once it was told to stop
+
+
+def _pool(assignment, jobs):
+    return ProcessPoolExecutor(jobs, initializer=_start, initargs=(assignment,))
 
 
 def _start(assignment):
@@ -54,4 +87,11 @@ def _start(assignment):
 
 
 def _grade(submission):
-    return grade_submission(submission, _assignment)
+    global _assignment
+    if _assignment is None:
+        raise KeyboardInterrupt
+    try:
+        return grade_submission(submission, _assignment)
+    except KeyboardInterrupt:
+        _assignment = None  # Ctrl-C: this worker's other submissions wait for the next run
+        raise

@@ -10,8 +10,9 @@ from pathlib import Path
 
 from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 
-from .course import ASSIGNMENT, Course, CourseError
+from .course import ASSIGNMENT, EXPOSED, Course, CourseError
 
 console = Console(highlight=False, soft_wrap=True)
 errors = Console(stderr=True, highlight=False, soft_wrap=True)
@@ -24,11 +25,17 @@ UNPROTECTED = (
 
 def run(arguments):
     """Run one command; the exit code: 0 done, 1 done but with something to look at, 2 not done."""
-    options = _parser().parse_args(arguments)
+    parser = _parser()
+    options, options.extra = parser.parse_known_args(arguments)
+    if options.extra and options.command not in (lab, test):
+        parser.error(f"unrecognized arguments: {' '.join(options.extra)}")
     try:
         return options.command(options)
     except CourseError as error:
         errors.print(str(error), markup=False)
+        return 2
+    except OSError as error:
+        errors.print(f"{error.filename or 'The system'}: {error.strerror}.", markup=False)
         return 2
     except KeyboardInterrupt:
         errors.print("Stopped. What was graded is kept; run the same command to go on.")
@@ -48,17 +55,18 @@ def _parser():
 
     def sandbox_options(sub):
         sub.add_argument("--unsafe-no-sandbox", action="store_true", help="run students' code without protection")
-        sub.add_argument("--seed", type=int, help="draw the hidden cases from this seed, to repeat a run")
+        sub.add_argument("--seed", type=_natural, help="draw the hidden cases from this seed, to repeat a run")
 
     sub = add("demo", demo, "grade a small class of realistic submissions, with feedback and the class report")
     sub.add_argument("--remove", action="store_true", help="remove the demo's class again")
-    sub = add("lab", lab, "open the student's notebooks in JupyterLab")
-    sub.add_argument("arguments", nargs=argparse.REMAINDER, help="passed on to JupyterLab, such as --port=8889")
+    add("lab", lab, "open the student's notebooks in JupyterLab; other options are passed on to it")
     add("release", release, "make notebooks/ from source/ and say what changed")
     sub = add("grade", grade, "grade submitted/ into the gradebook, autograded/, feedback/ and reports/")
     sub.add_argument("students", nargs="*", metavar="STUDENT", help="only these (default: everybody)")
     sub.add_argument("--force", action="store_true", help="grade again what is unchanged")
-    sub.add_argument("--jobs", type=int, default=os.cpu_count(), help="submissions at a time (default: all cores)")
+    sub.add_argument(
+        "--jobs", type=_positive, default=os.cpu_count(), help="submissions at a time (default: all cores)"
+    )
     sub.add_argument("--no-feedback", action="store_true", help="leave out nbgrader's feedback pages")
     sandbox_options(sub)
     add("report", report, "write the class report from what is graded")
@@ -72,9 +80,24 @@ def _parser():
     sub.add_argument("--output", type=Path, default=Path(f"{ASSIGNMENT}.zip"))
     sub = add("export", export, "write the gradebook's points as CSV")
     sub.add_argument("--output", type=Path, default=Path("-"), help="a file (default: print)")
-    sub = add("test", test, "run all tests")
-    sub.add_argument("arguments", nargs=argparse.REMAINDER, help="passed on to pytest")
+    add("test", test, "run all tests; other options are passed on to pytest")
     return parser
+
+
+def _natural(text):
+    number = int(text)
+    if number < 0:
+        raise ValueError
+    return number
+
+
+def _positive(text):
+    if _natural(text) == 0:
+        raise ValueError
+    return int(text)
+
+
+_natural.__name__, _positive.__name__ = "whole number", "positive number"  # as argparse names them in its errors
 
 
 def course():
@@ -88,7 +111,7 @@ def lab(options):
     folder = course().release
     if not folder.is_dir():
         raise CourseError("There are no notebooks yet: run `python3 -m autograder release` first.")
-    return subprocess.call([sys.executable, "-m", "jupyterlab", str(folder), *options.arguments])
+    return subprocess.call([sys.executable, "-m", "jupyterlab", str(folder), *options.extra])
 
 
 def release(options):
@@ -120,46 +143,55 @@ def package(options):
 
 def grade(options):
     here = course()
-    protected = _protection(options.unsafe_no_sandbox)
+    protected = _protection(here, options.unsafe_no_sandbox)
     students = here.students()
-    chosen, unknown = [], []
-    for student in options.students or students:
-        (chosen if student in students else unknown).append(student)
+    chosen = list(dict.fromkeys(options.students)) or students
+    unknown = [student for student in chosen if student not in students]
     for student in unknown:
         near = difflib.get_close_matches(student, students, 1)
         meant = f" Did you mean {near[0]}?" if near else ""
         errors.print(f"{student}: no submission in submitted/{student}/{ASSIGNMENT}.{meant}", markup=False)
-    failed = _grade(here, chosen, options, protected)
+    for student in here.astray() if not options.students else ():
+        errors.print(f"{student}: not graded: its files have to be in submitted/{student}/{ASSIGNMENT}/.", markup=False)
+    failed = _grade(
+        here,
+        [student for student in chosen if student in students],
+        protected,
+        seed=options.seed,
+        jobs=options.jobs,
+        force=options.force or options.seed is not None,
+        with_feedback=not options.no_feedback,
+    )
     return 1 if unknown or failed else 0
 
 
-def _protection(unsafe):
+def _protection(here, unsafe):
     """Whether sandboxes are used; refuses when they cannot be and nobody asked to go without."""
     from . import sandbox
 
     if unsafe:
         errors.print(UNPROTECTED)
         return False
-    problem = sandbox.problem()
+    problem = sandbox.problem() or (EXPOSED if sandbox.exposes(here.root) else None)
     if problem:
         raise CourseError(f"{problem}\nNothing was graded. To grade without protection: --unsafe-no-sandbox")
     return True
 
 
-def _grade(here, students, options, protected):
-    from . import feedback, report
+def _grade(here, students, protected, seed=None, jobs=os.cpu_count(), force=False, with_feedback=True):
+    """Grade, record, write feedback and report; returns the students who could not be graded."""
+    from . import report
     from .classroom import grade_class
     from .gradebook import Writer
     from .grading import assignment, new_seed
 
-    seed = new_seed() if options.seed is None else options.seed
-    failed = []
+    seed = new_seed() if seed is None else seed
+    failed, fresh = [], []
     with Writer(here) as writer:
         against = assignment(here, seed, isolated=protected)
-        fresh = []
         with _progress() as progress:
             bar = progress.add_task("grading", total=len(students))
-            for student, graded, problem in grade_class(here, students, against, writer, options.jobs, options.force):
+            for student, graded, problem in grade_class(here, students, against, writer, jobs, force):
                 progress.advance(bar)
                 if problem:
                     failed.append(student)
@@ -168,20 +200,13 @@ def _grade(here, students, options, protected):
                     fresh.append(student)
                     for line in graded.problems:
                         progress.console.print(f"{student}: {line}", markup=False)
-        wanted = [s for s in students if s not in failed and (s in fresh or not any(here.feedback(s).glob("*.html")))]
-        wanted = [student for student in wanted if any(here.autograded(student).glob("*.ipynb"))]
-        if not options.no_feedback and wanted:
-            with _progress() as progress:
-                bar = progress.add_task("feedback", total=len(wanted))
-                for student, problem in feedback.generate(here, wanted, options.jobs):
-                    progress.advance(bar)
-                    if problem:
-                        progress.console.print(f"{student}: no feedback: {problem}", markup=False)
-        recorded = writer.students()
-    found = report.write(here, [student for student in here.students() if student in recorded])
+        if with_feedback:
+            _write_feedback(here, [student for student in students if student not in failed], jobs)
+        found = report.write(here, _recorded(here, writer))
     _show_class(found, students)
     unchanged = len(students) - len(fresh) - len(failed)
-    console.print(f"{len(fresh)} graded (hidden cases drawn from seed {seed}), {unchanged} unchanged.")
+    drawn = f" (hidden cases drawn from seed {seed})" if fresh else ""
+    console.print(f"{len(fresh)} graded{drawn}, {unchanged} unchanged.")
     for what, where in (
         ("class report", here.reports / "index.html"),
         ("every verdict", here.reports / "verdicts.csv"),
@@ -192,11 +217,36 @@ def _grade(here, students, options, protected):
     return failed
 
 
+def _recorded(here, writer):
+    """The students of the class report: those whose work is there and in the gradebook."""
+    return sorted(writer.students() & set(here.students()))
+
+
+def _write_feedback(here, students, jobs):
+    from . import feedback
+
+    def lacks(student):
+        return any(here.autograded(student).glob("*.ipynb")) and not any(here.feedback(student).glob("*.html"))
+
+    wanted = [student for student in students if lacks(student)]
+    with _progress() as progress:
+        bar = progress.add_task("feedback", total=len(wanted))
+        for student, problem in feedback.generate(here, wanted, jobs):
+            progress.advance(bar)
+            if problem:
+                progress.console.print(f"{student}: no feedback: {problem}", markup=False)
+
+
 def _progress():
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
     columns = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
     return Progress(*columns, console=console)
+
+
+def _add_row(table, *cells):
+    """A row of plain text: what students call things is no markup."""
+    table.add_row(*(Text(cell) for cell in cells))
 
 
 def _show_class(found, students):
@@ -211,7 +261,7 @@ def _show_class(found, students):
             what = row.misconception or row.status
             if what != "graded":
                 said.setdefault(what, []).append(row.exercise)
-        table.add_row(student, points, "; ".join(f"{what} ({', '.join(names)})" for what, names in said.items()))
+        _add_row(table, student, points, "; ".join(f"{what} ({', '.join(names)})" for what, names in said.items()))
     console.print(table)
 
 
@@ -221,14 +271,14 @@ def report(options):
 
     here = course()
     with Writer(here) as writer:
-        students = sorted(writer.students())
+        students = _recorded(here, writer)
     _show_class(report.write(here, students), students)
     console.print(f"{here.reports.relative_to(here.root)}/index.html and verdicts.csv are written.")
     return 0
 
 
 def demo(options):
-    from . import sandbox
+    from . import report, sandbox
     from .demo import enroll, is_demo
     from .gradebook import Writer
     from .release import release as make
@@ -238,10 +288,11 @@ def demo(options):
         with Writer(here) as writer:
             for student in filter(is_demo, {*here.students(), *writer.students()}):
                 writer.remove(student)
+            report.write(here, _recorded(here, writer))
         console.print("The demo's class is removed.")
         return 0
     submitted = here.root / "submitted"
-    real = [student for student in here.students() if not is_demo(student)] if submitted.is_dir() else []
+    real = [name for name in (*here.students(), *here.astray()) if not is_demo(name)] if submitted.is_dir() else []
     if real:
         raise CourseError(
             f"This course has real submissions ({real[0]}, …), and the demo would add its class to their gradebook. "
@@ -255,30 +306,26 @@ def demo(options):
             f"{problem}\nThe demo runs its own submissions without a sandbox; grading yours would be refused.",
             markup=False,
         )
-    failed = _grade(here, students, _grading_options(), protected=problem is None)
+    failed = _grade(here, students, protected=problem is None)
     console.print("`python3 -m autograder demo --remove` takes the demo's class out again.", markup=False)
     return 1 if failed else 0
-
-
-def _grading_options():
-    return _parser().parse_args(["grade"])
 
 
 def check(options):
     from .check import check_files
 
     here = course()
-    protected = _protection(options.unsafe_no_sandbox)
-    found, problems = check_files(here, options.notebooks, options.seed, protected)
-    for problem in problems:
-        errors.print(problem, markup=False)
+    protected = _protection(here, options.unsafe_no_sandbox)
+    found, refused, mended = check_files(here, options.notebooks, options.seed, protected)
+    for line in refused + mended:
+        errors.print(line, markup=False)
     table = Table("notebook", "exercise", "points", "", box=None, pad_edge=False)
     for row, says in found:
-        table.add_row(row.notebook, row.exercise, f"{row.score:g} of {row.max_score:g}", says)
+        _add_row(table, row.notebook, row.exercise, f"{row.score:g} of {row.max_score:g}", says)
     earned, most = (sum(getattr(row, name) for row, _ in found) for name in ("score", "max_score"))
     console.print(table)
     console.print(f"{earned:g} of {most:g} points")
-    return 0 if found and earned == most and not problems else 1
+    return 0 if found and earned == most and not refused else 1
 
 
 def doctor(options):
@@ -304,4 +351,4 @@ def export(options):
 
 def test(options):
     everything = ["--numprocesses", str(os.cpu_count())]
-    return subprocess.call([sys.executable, "-m", "pytest", *(options.arguments or everything)])
+    return subprocess.call([sys.executable, "-m", "pytest", *(options.extra or everything)])

@@ -10,6 +10,10 @@ import nbformat
 from .exercises import EXERCISES
 
 ASSIGNMENT = "transforms"
+EXPOSED = (
+    "The course lies in a folder that notebooks can read in their sandbox (/usr, or that of Python itself), with its "
+    "solutions and gradebook. Move it somewhere else, such as your home folder."
+)
 
 
 class CourseError(Exception):
@@ -67,11 +71,15 @@ class Course:
                 "There is no submitted/ folder. Put each student's files into "
                 f"submitted/STUDENT/{ASSIGNMENT}/ (or run `nbgrader collect {ASSIGNMENT}`), then grade."
             )
-        return sorted(
-            path.name
-            for path in folder.iterdir()
-            if not path.name.startswith(".") and self.submitted(path.name).is_dir()
-        )
+        return sorted(name for name in self._folders() if self.submitted(name).is_dir())
+
+    def astray(self):
+        """The folders below submitted/ that hold no submission of this assignment."""
+        return sorted(name for name in self._folders() if not self.submitted(name).is_dir())
+
+    def _folders(self):
+        folders = (self.root / "submitted").iterdir()
+        return [path.name for path in folders if path.is_dir() and not path.name.startswith(".")]
 
     @cached_property
     def notebooks(self):

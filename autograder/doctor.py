@@ -3,6 +3,7 @@
 import sys
 
 from . import sandbox
+from .course import EXPOSED
 from .sandbox import Limits
 
 
@@ -29,6 +30,8 @@ def examine(course):
             "Not filtered: system calls (no seccomp filter yet); a hole in the kernel would be one in the sandbox.",
         ),
     ]
+    if sandbox.exposes(course.root):
+        lines.append((False, EXPOSED))
     released = course.release.is_dir()
     lines.append(
         (released, f"notebooks/ is {'there' if released else 'missing: run `python3 -m autograder release`'}.")

@@ -4,6 +4,7 @@ An interpreter that already has every package at its version is used as it is. O
 written last says that it is whole, so a set-up that failed or was interrupted is repaired by the next command.
 """
 
+import fcntl
 import hashlib
 import os
 import re
@@ -14,6 +15,7 @@ from importlib import metadata
 from pathlib import Path
 
 OLDEST = (3, 11)
+MADE = "AUTOGRADER_MADE_ENVIRONMENT"  # in the environment of the interpreter that ours goes on in
 
 
 class SetupFailed(Exception):
@@ -28,9 +30,14 @@ def ensure(root, arguments):
         _use(Path(sys.prefix, "bin"))
         return
     if Path(sys.prefix) == root / ".venv":
+        if os.environ.get(MADE) == sys.prefix:
+            raise SetupFailed(f".venv was made anew, and still lacks {', '.join(lacking(root / 'environment.txt'))}.")
         # Its packages were changed by hand: make it anew, with the Python that it was made from.
         (root / ".venv" / "stamp").unlink(missing_ok=True)
-    python = make(root)
+    with open(root / "environment.txt", encoding="utf-8") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)  # two first commands at once: the second waits, and finds it made
+        python = make(root)
+    os.environ[MADE] = str(root / ".venv")
     os.environ.pop("PYTHONPATH", None)
     os.execv(python, [str(python), "-m", "autograder", *arguments])
 

@@ -23,8 +23,4 @@ def _one(course, student):
     result = NbGraderAPI(CourseDirectory(config=config), config=config).generate_feedback(
         ASSIGNMENT, student, force=True
     )
-    return (
-        None
-        if result["success"]
-        else (result.get("error") or result.get("log") or "no reason given").strip().splitlines()[-1]
-    )
+    return None if result["success"] else (result.get("error") or result.get("log") or "no reason given").strip()[-200:]

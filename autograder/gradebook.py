@@ -1,7 +1,7 @@
 """The one writer: graded submissions into nbgrader's gradebook and the autograded/ folder.
 
-The marks are those that nbgrader's own SaveAutoGrades would record from the same notebooks, in one transaction for each
-student instead of one for each cell.
+The marks are those that nbgrader's own SaveAutoGrades would record from the same notebooks, written student by student
+instead of cell by cell.
 """
 
 import copy
@@ -16,10 +16,11 @@ from nbgrader import utils
 from nbgrader.api import Gradebook, MissingEntry
 from nbgrader.coursedir import CourseDirectory
 from nbgrader.preprocessors import AssignLatePenalties, SaveCells
-from sqlalchemy.exc import OperationalError
+from sqlalchemy.exc import DatabaseError, OperationalError
 from traitlets.config import PyFileConfigLoader
 
-from .course import ASSIGNMENT
+from .course import ASSIGNMENT, CourseError
+from .grading import timestamp
 
 PATIENCE = 60.0  # seconds to wait for a database that somebody else has locked
 
@@ -38,7 +39,13 @@ class Writer:
 
     def __enter__(self):
         released = self.course.notebooks  # raises CourseError when there are none, before a gradebook is made
-        self.gradebook = Gradebook(self.db_url)
+        try:
+            self.gradebook = Gradebook(self.db_url)
+        except DatabaseError as error:
+            raise CourseError(
+                f"The gradebook cannot be read ({error.orig}). Put a backup in its place; or move it away, and "
+                "`python3 -m autograder grade --force` makes a new one from submitted/ (without hand-given grades)."
+            ) from None
         try:
             self.gradebook.find_assignment(ASSIGNMENT)
         except MissingEntry:
@@ -53,18 +60,22 @@ class Writer:
         return {submission.student_id for submission in self.gradebook.assignment_submissions(ASSIGNMENT)}
 
     def record(self, graded):
-        """Write one Graded: first the files, then the marks; each replaces what was there as a whole."""
-        self._write_files(graded)
+        """Write one Graded: first the marks, then the files, whose records say that all is done."""
+        fresh = self._prepare_files(graded)
         start = time.monotonic()
         while True:
             try:
                 self._write_marks(graded)
-                return
-            except OperationalError:
+                break
+            except OperationalError as error:
                 self.gradebook.db.rollback()
-                if time.monotonic() - start > PATIENCE:
+                if "locked" not in str(error) or time.monotonic() - start > PATIENCE:
                     raise
                 time.sleep(0.5)
+        folder = self.course.autograded(graded.student)
+        for stale in (folder, self.course.feedback(graded.student)):  # feedback is made anew, or would be out of date
+            shutil.rmtree(stale, ignore_errors=True)
+        fresh.rename(folder)
 
     def totals(self):
         """CSV text: each student's points, automatic and manual, as the gradebook has them."""
@@ -85,25 +96,24 @@ class Writer:
         except MissingEntry:
             return
 
-    def _write_files(self, graded):
+    def _prepare_files(self, graded):
         folder = self.course.autograded(graded.student)
         fresh = folder.with_name(f".{folder.name}.new")
         shutil.rmtree(fresh, ignore_errors=True)
         fresh.mkdir(parents=True)
         for name, text in graded.notebooks.items():
             Path(fresh, f"{name}.ipynb").write_text(text, encoding="utf-8")
-        timestamp = self.course.submitted(graded.student) / "timestamp.txt"
-        if timestamp.is_file():
-            shutil.copy(timestamp, fresh / "timestamp.txt")
-        if folder.exists():
-            shutil.rmtree(folder)
-        fresh.rename(folder)
+        when, _ = timestamp(self.course, graded.student)
+        if when:
+            Path(fresh, "timestamp.txt").write_text(when, encoding="utf-8")
+        return fresh
 
     def _write_marks(self, graded):
         book = self.gradebook
         book.update_or_create_student(graded.student)
-        timestamp = self._timestamp(graded.student)
-        submission = book.update_or_create_submission(ASSIGNMENT, graded.student, **timestamp)
+        when, _ = timestamp(self.course, graded.student)
+        given = {"timestamp": when} if when else {}
+        submission = book.update_or_create_submission(ASSIGNMENT, graded.student, **given)
         for notebook in submission.notebooks:
             text = graded.notebooks.get(notebook.name)
             if text is None:
@@ -136,11 +146,6 @@ class Writer:
         for name, notebook in released.items():
             resources = {"notebook": name, "assignment": ASSIGNMENT, "db_url": self.db_url}
             SaveCells(config=self.config).preprocess(copy.deepcopy(notebook.notebook), {"nbgrader": resources})
-
-    def _timestamp(self, student):
-        path = self.course.submitted(student) / "timestamp.txt"
-        text = path.read_text(encoding="utf-8").strip() if path.is_file() else ""
-        return {"timestamp": utils.parse_utc(text)} if text else {}
 
     def _penalize(self, graded):
         """Late penalties are nbgrader's to decide, by the plug-in that its configuration names."""

@@ -14,15 +14,17 @@ from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
 
+import dateutil.parser
 import nbformat
 
 from .exercises import EXERCISES, key
 from .intake import LARGEST, restore
 from .judge import Row, judge, rows
+from .outputs import printable
 from .sandbox import Limits, Sandbox
 
 MOST_FILES = 200  # handed in besides the notebooks
-LARGEST_FILE = 5_000_000  # bytes
+LARGEST_FILES = 4_000_000  # bytes, all of them together
 RECORD = "transform_lab"  # the entry of an autograded notebook's metadata that holds its verdicts
 
 
@@ -95,29 +97,51 @@ def specification(course):
 
 
 def collect(course, student):
-    """The Submission in submitted/STUDENT; links, devices and huge files are left where they are, and said."""
-    folder, files, problems = course.submitted(student), {}, []
-    for path in sorted(folder.rglob("*")):
-        relative = path.relative_to(folder)
-        if relative.parts[0] == "transform_lab" or any(
-            part.startswith(".") or part == "__pycache__" for part in relative.parts
-        ):
-            continue  # the grader uses the course's own package
-        content, problem = _read(path)
+    """The Submission in submitted/STUDENT; links, devices and what is too much are left where they are, and said."""
+    folder, files, problems, size = course.submitted(student), {}, [], 0
+    expected = [folder / f"{name}.ipynb" for name in course.notebooks]
+    others = sorted(path for path in folder.rglob("*") if path not in expected and not _ignored(path, folder))
+    for path in expected + others:
+        name = printable(path.relative_to(folder).as_posix())
+        if path in others and path.is_dir() and not path.is_symlink():
+            continue
+        content, problem = read(path)
+        if path in others and content is not None:
+            size += len(content)
+            if len(files) >= MOST_FILES + len(expected) or size > LARGEST_FILES:
+                problem = (
+                    f"left out; besides notebooks, {MOST_FILES} files of {LARGEST_FILES / 1e6:g} MB in all are taken"
+                )
+        if path in expected and not os.path.lexists(path):
+            problem = "not handed in; 0 points"
         if problem:
-            problems.append(f"{relative}: {problem}.")
-        elif content is not None and len(files) >= MOST_FILES:
-            problems.append(f"{relative}: left out; at most {MOST_FILES} files are taken.")
-        elif content is not None:
-            files[relative.as_posix()] = content
-    for name in (path for path in files if path.endswith(".ipynb") and Path(path).stem not in course.notebooks):
-        wanted = ", ".join(f"{released}.ipynb" for released in course.notebooks)
-        problems.append(
-            f"{name}: no notebook of this assignment has that name; rename it to one of {wanted} and grade again."
-        )
-    for name in (name for name in course.notebooks if f"{name}.ipynb" not in files):
-        problems.append(f"{name}.ipynb: not handed in; 0 points.")
-    return Submission(student, files, tuple(problems))
+            problems.append(f"{name}: {problem}.")
+        else:
+            files[name] = content
+        if path in others and path.suffix == ".ipynb":
+            wanted = ", ".join(f"{released}.ipynb" for released in course.notebooks)
+            problems.append(
+                f"{name}: no notebook of this assignment has that name; rename it to one of {wanted} and grade again."
+            )
+    _, problem = timestamp(course, student)
+    return Submission(student, files, tuple(problems + [problem] if problem else problems))
+
+
+def timestamp(course, student):
+    """(when the work was handed in, as text that nbgrader can read, or None; what is wrong with timestamp.txt or None)"""
+    path = course.submitted(student) / "timestamp.txt"
+    content, _ = read(path)
+    text = (content or b"").decode("utf-8", "replace").strip()
+    try:
+        return (text, None) if text and dateutil.parser.parse(text) else (None, None)
+    except (ValueError, OverflowError):
+        return None, f"timestamp.txt: {text[:60]!r} is no date; graded as if there were none."
+
+
+def _ignored(path, folder):
+    """The grader uses the course's own package; caches and hidden files are nobody's work."""
+    parts = path.relative_to(folder).parts
+    return parts[0] == "transform_lab" or any(part.startswith(".") or part == "__pycache__" for part in parts)
 
 
 def grade_submission(submission, assignment):
@@ -129,42 +153,44 @@ def grade_submission(submission, assignment):
             if content is None:
                 graded.rows += missing(released)
                 continue
-            text, notebook_rows, problems = grade_notebook(content, released, assignment, sandbox, submission.digest)
-            graded.notebooks[name] = text
-            graded.rows += notebook_rows
-            graded.problems += problems
+            intake = restore(content, released)
+            verdicts = grade_notebook(intake, released, assignment, sandbox, submission)
+            graded.rows += rows(released, verdicts)
+            graded.notebooks[name] = nbformat.writes(intake.notebook) + "\n"
+            graded.problems += intake.problems
     return graded
 
 
-def grade_notebook(content, released, assignment, sandbox, digest=""):
-    """Grade one notebook file (bytes): (the graded notebook as text, its Rows, what was odd)."""
-    intake = restore(content, released)
+def grade_notebook(intake, released, assignment, sandbox, submission):
+    """Judge one notebook: {exercise: Verdict}; its outputs, and its record in the metadata, are filled in.
+
+    The record is what reports are made from, and tells what need not be graded again.
+    """
     verdicts = judge(intake, released, assignment.keys, sandbox)
-    found = rows(released, verdicts)
-    intake.notebook.metadata[RECORD] = record(found, intake.problems, assignment, digest)
-    return nbformat.writes(intake.notebook) + "\n", found, intake.problems
-
-
-def record(found, problems, assignment, digest):
-    """What an autograded notebook says of itself: the source of reports, and of what need not be graded again."""
-    return {
-        "rows": [asdict(row) for row in found],
-        "problems": list(problems),
-        "seed": assignment.seed,
-        "graded": datetime.now(UTC).isoformat(timespec="seconds"),
-        "submission": digest,
-        "specification": assignment.digest,
-    }
+    intake.notebook.metadata[RECORD] = nbformat.from_dict(
+        {
+            "rows": [asdict(row) for row in rows(released, verdicts)],
+            "problems": [*submission.problems, *intake.problems],
+            "seed": assignment.seed,
+            "graded": datetime.now(UTC).isoformat(timespec="seconds"),
+            "submission": submission.digest,
+            "specification": assignment.digest,
+        }
+    )
+    return verdicts
 
 
 def recorded(course, student):
-    """({notebook: record}) of what is already graded; a damaged file counts as not graded."""
+    """({notebook: record}) of what is already graded; a damaged or outdated record counts as not graded."""
     found = {}
-    for name in course.notebooks:
+    for name, released in course.notebooks.items():
         try:
             text = (course.autograded(student) / f"{name}.ipynb").read_text(encoding="utf-8")
-            found[name] = json.loads(text)["metadata"][RECORD]
-        except (OSError, ValueError, KeyError):
+            record = json.loads(text)["metadata"][RECORD]
+            record["rows"] = [Row(**row) for row in record["rows"]]
+            if [row.exercise for row in record["rows"]] == list(released.points):
+                found[name] = record
+        except (OSError, ValueError, KeyError, TypeError):
             continue
     return found
 
@@ -174,18 +200,18 @@ def missing(released):
     return [Row(released.name, name, 0.0, points, "missing") for name, points in released.points.items()]
 
 
-def _read(path):
-    """(bytes or None, what is wrong with it or None)"""
+def read(path):
+    """(the bytes of a regular file or None, what is wrong with it or None); follows no link, waits for nobody."""
+    if path.is_symlink():
+        return None, "left out; it is a link"
     try:
         descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
     except OSError as error:
         return None, f"left out; it cannot be opened ({error.strerror})"
-    with open(descriptor, "rb") as file:
-        status = os.fstat(descriptor)
-        if stat.S_ISDIR(status.st_mode):
-            return None, None
-        if not stat.S_ISREG(status.st_mode):
+    try:
+        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
             return None, "left out; it is no regular file"
-        if status.st_size > LARGEST_FILE and path.suffix != ".ipynb":
-            return None, f"left out; it has more than {LARGEST_FILE / 1e6:.0f} MB"
-        return file.read(LARGEST + 1), None
+        with open(descriptor, "rb", closefd=False) as file:
+            return file.read(LARGEST + 1), None
+    finally:
+        os.close(descriptor)

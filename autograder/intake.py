@@ -11,8 +11,11 @@ from dataclasses import dataclass, field
 
 import nbformat
 
+from .outputs import printable
+
 LARGEST = 20_000_000  # bytes of one notebook file; the released ones are below 100 kB, pictures included
 MOST_CELLS = 2_000
+CELL_FIELDS = {"cell_type", "id", "metadata", "source", "attachments", "outputs", "execution_count"}
 
 
 @dataclass
@@ -56,11 +59,11 @@ def _parse(content):
     if len(content) > LARGEST:
         raise Unreadable(f"it has {len(content) / 1e6:.0f} MB; at most {LARGEST / 1e6:.0f} MB are accepted")
     try:
-        raw = json.loads(content.decode("utf-8"))
+        raw = json.loads(content.decode("utf-8-sig"))
     except (UnicodeDecodeError, RecursionError, ValueError) as error:
         raise Unreadable(f"it is not JSON ({_short(error)})") from error
     try:
-        notebook = nbformat.reads(json.dumps(raw), as_version=4)
+        notebook = nbformat.reads(printable(json.dumps(_known_fields(raw), ensure_ascii=False)), as_version=4)
         for cell in notebook.cells:
             if cell.cell_type == "code":
                 cell.outputs, cell.execution_count = [], None
@@ -72,6 +75,17 @@ def _parse(content):
     if len(notebook.cells) > MOST_CELLS:
         raise Unreadable(f"it has {len(notebook.cells)} cells; at most {MOST_CELLS} are accepted")
     return notebook
+
+
+def _known_fields(raw):
+    """The notebook's JSON without what editors add to cells beyond the format; that must not cost the notebook."""
+    if isinstance(raw, dict) and raw.get("nbformat") == 4 and isinstance(raw.get("cells"), list):
+        for cell in filter(lambda cell: isinstance(cell, dict), raw["cells"]):
+            for field in cell.keys() - CELL_FIELDS:
+                del cell[field]
+            if not isinstance(cell.get("metadata"), dict):
+                cell["metadata"] = {}
+    return raw
 
 
 def _short(error):
@@ -135,8 +149,8 @@ def _add_missing(intake, released, grade_id, original):
         intake.say(
             released, f"the test cell of {grade_id} is missing: 0 points; put it back into the file and grade again"
         )
-    elif nbgrader.grade:
-        intake.say(released, f"the answer cell {grade_id} is missing; an empty one was added")
+    else:
+        intake.say(released, f"the cell {grade_id} is missing, or has lost its nbgrader data; an empty one was added")
 
 
 def _note(released, text):

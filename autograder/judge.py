@@ -4,6 +4,7 @@ A test cell's own code is never run: where it stands, the judge calls the functi
 exercise, and compares what comes back. So nothing a student redefines in the notebook has a say.
 """
 
+import time
 from dataclasses import dataclass
 
 import nbformat
@@ -22,7 +23,12 @@ NOT_GRADED = {
 
 @dataclass(frozen=True)
 class Row:
-    """One student's exercise: a row of verdicts.csv without the student's name."""
+    """One student's exercise: a row of verdicts.csv without the student's name.
+
+    status: "graded"; "missing" (no such notebook or cell); "error" (it raised, is not done, or its cell was never
+    reached); "timeout"; "killed" (it ended its process, or reached a limit); "unreadable" (the file)
+    misconception: ids, joined by ";"; empty when none explains the answers
+    """
 
     notebook: str
     exercise: str
@@ -39,14 +45,16 @@ def judge(intake, released, keys, sandbox):
     """
     verdicts = {name: Verdict(name, status, says=NOT_GRADED[status]) for name, status in intake.statuses.items()}
     if set(verdicts) != set(released.points):
-        skip = set()
+        skip, deadline = set(), time.monotonic() + sandbox.limits.notebook
         for _ in range(MOST_RESTARTS + 1):
-            culprit = _run(intake, released, keys, sandbox, verdicts, skip)
-            if culprit is None:
+            with sandbox.notebook(deadline) as process:
+                culprit = _run(intake, released, keys, process, verdicts, skip)
+            if culprit is None or process.exhausted:
                 break
             skip.add(culprit)
-    for name in released.points:
-        verdicts.setdefault(name, Verdict(name, "error", says="This cell was never reached."))
+        status = "timeout" if process.exhausted else "error"
+        for name in released.points:
+            verdicts.setdefault(name, Verdict(name, status, says="The notebook did not get as far as this cell."))
     for cell in intake.notebook.cells:
         name = _exercise(cell, released)
         if name:
@@ -65,32 +73,31 @@ def rows(released, verdicts):
 
 def score(verdict, points):
     """Points to two decimals; all of them for a right solution alone."""
-    return points if verdict.right else min(round(verdict.credit * points, 2), points - 0.01)
+    return points if verdict.right else max(0.0, min(round(verdict.credit * points, 2), points - 0.01))
 
 
-def _run(intake, released, keys, sandbox, verdicts, skip):
+def _run(intake, released, keys, process, verdicts, skip):
     """Run the notebook from its start; returns the position of a cell that brought the process down, or None."""
-    with sandbox.notebook() as process:
-        for position, cell in enumerate(intake.notebook.cells):
-            if cell.cell_type != "code" or position in skip:
-                continue
-            name = _exercise(cell, released)
-            if name is None:
-                try:
-                    run = process.run_cell(cell.source)
-                except Ended as ended:
-                    cell.outputs = [nbformat.from_dict(_stopped(ended))]
-                    return position
-                cell.outputs = [nbformat.from_dict(output) for output in map(safe, run.outputs) if output]
-                cell.execution_count = run.execution_count
-                if run.ended:
-                    _end(intake, released, verdicts, position)
-                    return None
-            elif name not in verdicts:
-                verdict = examine(name, keys[name], lambda args, kwargs, name=name: process.call(name, args, kwargs))
-                verdicts[name] = verdict
-                if process.gone:
-                    return position
+    for position, cell in enumerate(intake.notebook.cells):
+        if cell.cell_type != "code" or position in skip:
+            continue
+        name = _exercise(cell, released)
+        if name is None:
+            try:
+                run = process.run_cell(cell.source)
+            except Ended as ended:
+                cell.outputs = [nbformat.from_dict(_stopped(ended))]
+                return position
+            cell.outputs = [nbformat.from_dict(output) for output in map(safe, run.outputs) if output]
+            cell.execution_count = run.execution_count
+            if run.ended:
+                _end(intake, released, verdicts, position)
+                return None
+        elif name not in verdicts:
+            verdict = examine(name, keys[name], lambda args, kwargs, name=name: process.call(name, args, kwargs))
+            verdicts[name] = verdict
+            if process.gone:
+                return position
     return None
 
 

@@ -10,19 +10,24 @@ PICTURES = ("image/png", "image/jpeg", "image/gif")
 HTML_TAGS = nh3.ALLOWED_TAGS - {"a", "img"}
 
 
+def printable(text):
+    """Text without the halves of characters that no file and no terminal can hold."""
+    return text.encode("utf-8", "replace").decode("utf-8")
+
+
 def safe(output):
     """`output` (an untrusted dictionary) as an nbformat output, or None when it is nothing that can be shown."""
     kind = output.get("output_type")
     if kind == "stream":
         name = "stderr" if output.get("name") == "stderr" else "stdout"
-        return {"output_type": "stream", "name": name, "text": str(output.get("text", ""))}
+        return {"output_type": "stream", "name": name, "text": printable(str(output.get("text", "")))}
     if kind == "error":
         lines = output.get("traceback") if isinstance(output.get("traceback"), list) else []
         return {
             "output_type": "error",
-            "ename": str(output.get("ename", "")),
-            "evalue": str(output.get("evalue", "")),
-            "traceback": [str(line) for line in lines],
+            "ename": printable(str(output.get("ename", ""))),
+            "evalue": printable(str(output.get("evalue", ""))),
+            "traceback": [printable(str(line)) for line in lines],
         }
     if kind in ("display_data", "execute_result"):
         data = output.get("data") if isinstance(output.get("data"), dict) else {}
@@ -43,6 +48,7 @@ def _safe_data(mime, value):
     text = "".join(value) if isinstance(value, list) and all(isinstance(part, str) for part in value) else value
     if not isinstance(text, str):
         return None
+    text = printable(text)
     if mime in ("text/html", "text/markdown"):
         return nh3.clean(text, tags=HTML_TAGS)
     if mime in TEXT:

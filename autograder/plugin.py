@@ -4,6 +4,7 @@ nbgrader_config.py names the three classes here. nbgrader keeps its own part: fo
 """
 
 import io
+import os
 from functools import cached_property
 from pathlib import Path
 
@@ -14,10 +15,9 @@ from nbgrader.preprocessors import NbGraderPreprocessor
 from traitlets import Bool
 
 from . import sandbox
-from .course import Course
-from .grading import RECORD, assignment, collect, new_seed, record
+from .course import EXPOSED, Course
+from .grading import RECORD, assignment, collect, grade_notebook, new_seed, read
 from .intake import Intake, restore
-from .judge import judge, rows
 
 
 class Exporter(NotebookExporter):
@@ -34,18 +34,19 @@ class Exporter(NotebookExporter):
 
     @cached_property
     def assignment(self):
-        problem = sandbox.problem()
+        problem = sandbox.problem() or (sandbox.exposes(self.course.root) and EXPOSED)
         if problem and not self.unsafe_no_sandbox:
             raise NbGraderException(f"{problem} To grade without protection: --Exporter.unsafe_no_sandbox=True")
         return assignment(self.course, new_seed(), isolated=not self.unsafe_no_sandbox)
 
     def from_filename(self, filename, resources=None, **kwargs):
-        path = Path(filename)
-        if "submitted" not in path.resolve().relative_to(self.course.root.resolve()).parts[:1]:
+        path = Path(os.path.abspath(filename))
+        if not path.is_relative_to(self.course.root / "submitted"):
             return super().from_filename(filename, resources, **kwargs)
-        intake = restore(path.read_bytes(), self.course.notebooks[path.stem])
-        for problem in intake.problems:
-            self.log.warning(problem)
+        content, problem = read(path)
+        intake = restore(b"" if content is None else content, self.course.notebooks[path.stem])
+        for line in [problem] if problem else intake.problems:
+            self.log.warning(line)
         intake.notebook.metadata[RECORD] = {"statuses": intake.statuses, "problems": intake.problems}
         return self.from_file(io.StringIO(nbformat.writes(intake.notebook)), resources, **kwargs)
 
@@ -56,12 +57,8 @@ class Judge(NbGraderPreprocessor):
     def preprocess(self, nb, resources):
         names = resources["nbgrader"]
         grader = self.parent.assignment
-        released = grader.released[names["notebook"]]
         intake = Intake(nb, dict(nb.metadata[RECORD]["statuses"]), list(nb.metadata[RECORD]["problems"]))
         submission = collect(self.parent.course, names["student"])
         with grader.sandbox(submission) as box:
-            verdicts = judge(intake, released, grader.keys, box)
-        nb.metadata[RECORD] = nbformat.from_dict(
-            record(rows(released, verdicts), intake.problems, grader, submission.digest)
-        )
+            grade_notebook(intake, grader.released[names["notebook"]], grader, box, submission)
         return nb, resources

@@ -32,22 +32,30 @@ def public_key(course):
 
 def release(course):
     """Make notebooks/ from source/ and record the assignment in the gradebook; the lines that say what changed."""
-    (course.package / "key.json").write_text(public_key(course), encoding="utf-8")
-    before = _contents(course.release)
+    before, text = _contents(course.release), public_key(course)
+    key_file = course.package / "key.json"
+    key_before = key_file.read_bytes() if key_file.exists() else None
     config = settings(course)
     with tempfile.TemporaryDirectory(prefix="release-") as kept:
-        if course.release.exists():
+        if before:
             shutil.copytree(course.release, Path(kept, ASSIGNMENT))
-        logging.getLogger("traitlets").setLevel(logging.CRITICAL)
-        result = NbGraderAPI(CourseDirectory(config=config), config=config).generate_assignment(ASSIGNMENT, force=True)
-        if not result["success"]:
+        try:
+            key_file.write_text(text, encoding="utf-8")
+            logging.getLogger("traitlets").setLevel(logging.CRITICAL)
+            result = NbGraderAPI(CourseDirectory(config=config), config=config).generate_assignment(
+                ASSIGNMENT, force=True
+            )
+            if not result["success"]:
+                reason = (result.get("error") or result.get("log") or "no reason given").strip().splitlines()[-1]
+                raise CourseError(f"nbgrader could not make the release, and notebooks/ is as before: {reason}")
+        except BaseException:  # Ctrl-C, too, must not cost the notebooks
             shutil.rmtree(course.release, ignore_errors=True)
             if before:
                 shutil.copytree(Path(kept, ASSIGNMENT), course.release)
-            reason = (result.get("error") or result.get("log") or "").strip().splitlines()
-            raise CourseError(
-                f"nbgrader could not make the release, and notebooks/ is as before: {reason[-1] if reason else '?'}"
-            )
+            key_file.unlink(missing_ok=True)
+            if key_before is not None:
+                key_file.write_bytes(key_before)
+            raise
     return _changes(before, _contents(course.release))
 
 

@@ -36,7 +36,7 @@ def verdicts(course, students):
 
 
 def _rows(record, released):
-    return [Row(**row) for row in record["rows"]] if record else missing(released)
+    return record["rows"] if record else missing(released)
 
 
 def write(course, students):
@@ -67,7 +67,7 @@ def summary(found):
     """For each exercise: (notebook, name, how many have all points, how many students, average share of the points)."""
     lines = []
     for column in zip(*found.values()):
-        shares = [row.score / row.max_score for row in column]
+        shares = [row.score / row.max_score if row.max_score else 1.0 for row in column]
         full = sum(share == 1 for share in shares)
         lines.append((column[0].notebook, column[0].exercise, full, len(column), sum(shares) / len(shares)))
     return lines
@@ -80,7 +80,7 @@ def misunderstood(found):
     lines = []
     for (identifier, exercise), count in times.most_common():
         sentences = {m.id: (m.says, m.hint) for m in EXERCISES[exercise].misconceptions}
-        lines.append((identifier, exercise, count, *(GENERAL | sentences)[identifier]))
+        lines.append((identifier, exercise, count, *(GENERAL | sentences).get(identifier, ("", ""))))
     return lines
 
 

@@ -36,10 +36,10 @@ def test_there_are_five():
 
 
 def test_the_solved_notebooks_earn_everything_in_the_sandbox(sandboxed):
-    found, problems = check_files(Course(ROOT), SOLVED)
+    found, refused, mended = check_files(Course(ROOT), SOLVED)
     assert len(found) == 16
     assert [(row.exercise, row.score) for row, _ in found] == [(row.exercise, row.max_score) for row, _ in found]
-    assert problems == []
+    assert refused == mended == []
 
 
 def test_no_cell_of_a_solved_notebook_fails_in_the_sandbox(sandboxed):
@@ -54,11 +54,11 @@ def test_no_cell_of_a_solved_notebook_fails_in_the_sandbox(sandboxed):
 
 
 def test_the_untouched_notebooks_earn_nothing_in_the_sandbox(sandboxed):
-    found, problems = check_files(Course(ROOT), RELEASED)
+    found, refused, mended = check_files(Course(ROOT), RELEASED)
     assert [row.score for row, _ in found] == [0.0] * 16
     assert {row.status for row, _ in found} == {"error"}
     assert {says for _, says in found} == {"Not done yet."}
-    assert problems == []
+    assert refused == mended == []
 
 
 @pytest.mark.parametrize("path", SOLVED, ids=names(SOLVED))

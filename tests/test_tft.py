@@ -238,7 +238,7 @@ def test_vectors():
 
 
 @pytest.mark.filterwarnings("ignore:the matrix subclass")
-@pytest.mark.parametrize("convert", [np.ndarray.tolist, np.asmatrix, np.float32, np.int64], ids=str)
+@pytest.mark.parametrize("convert", [np.ndarray.tolist, np.asmatrix, np.float32, np.int64], ids=lambda f: f.__name__)
 def test_any_kind_of_numbers_is_taken(convert):
     T = np.array([[0.0, -1, 0, 1], [1, 0, 0, 2], [0, 0, 1, 3], [0, 0, 0, 1]])
     q = tft.quaternion_from_matrix(convert(T))

@@ -1,7 +1,7 @@
 """The command line that puts a process into a sandbox, and the probe that tells whether it works on this machine.
 
 Inside there are: /usr and the Python in use (read-only), the worker's code, the students' package without its key,
-a small writable folder, and nothing else of this machine: no network, no other processes, no environment.
+small writable folders, and nothing else of this machine: no network, no other processes, no environment.
 """
 
 import os
@@ -35,7 +35,8 @@ def problem():
         )
     if shutil.which("bwrap") is None:
         return INSTALL
-    probe = subprocess.run([*command(Path("/nonexistent")), "true"], capture_output=True, text=True, timeout=20)
+    python = [*command(Path("/nonexistent")), sys.executable, "-I", "-c", ""]
+    probe = subprocess.run(python, capture_output=True, text=True, timeout=60)
     if probe.returncode == 0:
         return None
     return REFUSED.format(reason=" ".join(probe.stderr.split())[:200] or f"exit {probe.returncode}")
@@ -65,8 +66,8 @@ def command(package, megabytes=50):
     made = {Path("/tmp"), COURSE, COURSE / "transforms"}
     for path in filter(Path.exists, map(Path, ("/etc/ld.so.cache", "/etc/fonts"))):
         arguments += _bind(path, path, made)
-    for folder in dict.fromkeys(Path(prefix).resolve() for prefix in (sys.base_prefix, sys.prefix)):
-        if not folder.is_relative_to("/usr"):
+    for folder in _python():
+        if not folder.is_relative_to("/usr") and folder not in made:
             arguments += _bind(folder, folder, made)
     for name in WORKER_FILES:
         arguments += _bind(HERE / name, WORKER / name, made)
@@ -79,6 +80,17 @@ def command(package, megabytes=50):
         arguments += ["setpriv", "--reuid", number, "--regid", number, "--clear-groups"]
         arguments += ["--bounding-set=-all", "--inh-caps=-all", "--no-new-privs"]
     return arguments
+
+
+def exposes(folder):
+    """Whether notebooks in a sandbox could read `folder`, because it lies in what Python needs."""
+    return any(Path(folder).resolve().is_relative_to(seen) for seen in (Path("/usr"), *_python()))
+
+
+def _python():
+    """The folders of the Python in use, as they are called and as they are."""
+    prefixes = Path(sys.base_prefix), Path(sys.prefix)
+    return dict.fromkeys((*prefixes, *(prefix.resolve() for prefix in prefixes)))
 
 
 def _bind(source, target, made):

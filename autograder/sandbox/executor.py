@@ -182,24 +182,20 @@ class Executor:
         asyncio.set_event_loop(self.loop)
 
     def run_cell(self, source):
-        """Run one cell: {"outputs", "execution_count", "ended", "interrupted"}."""
-        interrupted = False
+        """Run one cell: {"outputs", "execution_count", "ended"}."""
         try:
             self.running = True
             # A Jupyter cell runs inside an event loop: `await` works, asyncio.run says that a loop is running.
             self.loop.run_until_complete(self._run(source))
-        except KeyboardInterrupt:
-            interrupted = True
+        except KeyboardInterrupt:  # IPython shows those of the cell itself; this one came between two steps of its own
+            self.shell.showtraceback()
         finally:
             self.running = False
         self._collect_raw()
-        outputs = self.outputs.take()
-        interrupted = interrupted or any(output.get("ename") == "Interrupted" for output in outputs)
         return {
-            "outputs": outputs,
+            "outputs": self.outputs.take(),
             "execution_count": self.shell.execution_count - 1,
             "ended": self.shell.ended,
-            "interrupted": interrupted,
         }
 
     def call(self, name, args, kwargs):

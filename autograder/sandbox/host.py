@@ -13,6 +13,7 @@ from pathlib import Path
 from transform_lab import codec
 from transform_lab.verdict import Reply
 
+from ..outputs import printable
 from . import bubblewrap
 from .channel import Channel, Closed, Garbled, Late
 
@@ -21,12 +22,14 @@ HERE = Path(__file__).parent
 
 @dataclass(frozen=True)
 class Limits:
-    """What one submission may use. Seconds are of wall time; a limit reached costs the exercise, not the notebook."""
+    """What a notebook may use. Seconds are of wall time.
+
+    A call or a cell that reaches its limit costs itself; a notebook that does costs its exercises from there on.
+    """
 
     cell: float = 10.0
     call: float = 3.0
     notebook: float = 90.0
-    submission: float = 240.0
     grace: float = 1.0  # between the interrupt and the end of the process
     start: float = 60.0
     memory: int = 2_000_000_000  # bytes of address space for each process
@@ -58,7 +61,6 @@ class CellRun:
     outputs: list = field(default_factory=list)
     execution_count: int | None = None
     ended: bool = False  # the cell called exit() or quit()
-    interrupted: bool = False
 
 
 class Sandbox:
@@ -74,19 +76,21 @@ class Sandbox:
         self.process = self.control = self.folder = self.errors = None
 
     def __enter__(self):
-        self.deadline = time.monotonic() + self.limits.submission
         self._start()
         return self
 
     def __exit__(self, *_):
         self._stop()
 
-    def notebook(self):
-        """A fresh NotebookProcess; starts the sandbox again if the student's code brought it down."""
+    def notebook(self, deadline=None):
+        """A fresh NotebookProcess; starts the sandbox again if the student's code brought it down.
+
+        deadline: when the notebook's time is over (time.monotonic), for one that is run again
+        """
         if self.process.poll() is not None:
             self._stop()
             self._start()
-        return NotebookProcess(self)
+        return NotebookProcess(self, deadline or time.monotonic() + self.limits.notebook)
 
     def said(self):
         """The end of what the worker itself wrote: the reason, when it failed."""
@@ -128,7 +132,7 @@ class Sandbox:
             grader = Channel(self.control)
             grader.send(settings)
             grader.receive(time.monotonic() + self.limits.start)
-        except (Closed, Late) as error:
+        except (Closed, Late, Garbled, OSError) as error:
             self._stop()
             raise RuntimeError(f"the sandbox did not start: {self.said() or 'no answer in time'}") from error
 
@@ -148,18 +152,22 @@ class Sandbox:
 class NotebookProcess:
     """One notebook's process in a sandbox: a context manager with `run_cell` and `call`."""
 
-    def __init__(self, sandbox):
-        self.sandbox, self.limits = sandbox, sandbox.limits
+    def __init__(self, sandbox, deadline):
+        self.sandbox, self.limits, self.deadline = sandbox, sandbox.limits, deadline
         connection, inside = socket.socketpair()
         connection.settimeout(self.limits.grace + 5)  # for sending to a process that does not read
         self.channel = Channel(connection)
-        self.deadline = min(time.monotonic() + self.limits.notebook, sandbox.deadline)
         self.gone = False  # whether its process had to be stopped, or died
         socket.send_fds(sandbox.control, [b"S"], [inside.fileno()])
         inside.close()
 
     def __enter__(self):
         return self
+
+    @property
+    def exhausted(self):
+        """Whether the notebook's time is over."""
+        return time.monotonic() >= self.deadline
 
     def __exit__(self, *_):
         self.channel.connection.close()
@@ -179,9 +187,7 @@ class NotebookProcess:
         try:
             outputs = [dict(output) for output in reply["outputs"]]
             count = reply["execution_count"]
-            return CellRun(
-                outputs, count if type(count) is int else None, reply["ended"] is True, reply["interrupted"] is True
-            )
+            return CellRun(outputs, count if type(count) is int else None, reply["ended"] is True)
         except (KeyError, TypeError, ValueError) as error:
             raise self._ended("killed") from error
 
@@ -200,7 +206,7 @@ class NotebookProcess:
         except codec.NotPlain:
             self.gone = True  # no executor of ours writes that
             return Reply("killed")
-        return Reply(outcome, reply.get("value"), reply.get("arguments"), error[:300], printed[:300])
+        return Reply(outcome, reply.get("value"), reply.get("arguments"), printable(error[:300]), printed[:300])
 
     def _request(self, action, arguments, seconds):
         nonce = secrets.token_hex(16)

@@ -25,16 +25,18 @@ def main():
     settings = Channel(control).receive()
     _limit(settings["limits"])
     os.environ.update(settings["environment"])
-    for path, content in settings["files"].items():
-        target = Path(path)
-        target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_bytes(base64.b64decode(content))
-    sys.path.insert(0, "")  # as in Jupyter: modules beside the notebook
 
     # Loaded here, once for all notebooks: these modules are most of a notebook's start.
     import executor  # noqa: F401
     import numpy.random  # noqa: F401
     import scipy.spatial.transform  # noqa: F401
+
+    # Only now: a student's own numpy.py must not become the grader's.
+    for path, content in settings["files"].items():
+        target = Path(path)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_bytes(base64.b64decode(content))
+    sys.path.insert(0, "")  # as in Jupyter: modules beside the notebook
 
     Channel(control).send({"ready": True})
     Worker(control, settings["isolated"]).serve()

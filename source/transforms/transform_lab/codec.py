@@ -53,14 +53,14 @@ def encode(value, depth=0):
         return _array(value)
     if depth >= DEEPEST:
         return _other(value)
-    if isinstance(value, (list, tuple)):
-        return [encode(item, depth + 1) for item in value] if len(value) <= LONGEST_LIST else _other(value)
     for name, fields in MESSAGES.items():
         if all(hasattr(value, field) for field in fields):
             return {
                 "message": name,
                 "fields": {field: encode(getattr(value, field), depth + 1) for field in fields},
             }
+    if isinstance(value, (list, tuple)) and len(value) <= LONGEST_LIST:
+        return [encode(item, depth + 1) for item in value]
     return _other(value)
 
 
@@ -116,13 +116,16 @@ def _other(value):
 
 
 def _array(value):
-    if value.size > LARGEST_ARRAY:
+    if value.size > LARGEST_ARRAY or value.ndim > DEEPEST or max(value.shape, default=0) > LARGEST_ARRAY:
         return {"other": f"array of shape {value.shape}"}
     if value.dtype.kind not in "biuf":
         return {"other": f"array of {value.dtype}"[:LONGEST_TEXT]}
     if value.ndim == 0:
         return encode(value.item())
-    flat = [encode(item) for item in np.asarray(value).ravel().tolist()]
+    numbers = np.asarray(value).ravel()
+    if numbers.dtype.kind in "iu" and np.any(np.abs(numbers.astype(np.float64)) > LARGEST_INTEGER):
+        return {"other": "array of integers out of range"}
+    flat = [encode(item) for item in numbers.tolist()]
     return {"array": flat, "shape": list(value.shape)}
 
 
