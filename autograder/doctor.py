@@ -22,8 +22,8 @@ def examine(course):
         (True, "Verdicts are reached outside the notebook's process: no expected value or hidden case is ever in it."),
         (
             True,
-            f"Limits: {limits.call:g} s a call, {limits.cell:g} s a cell, {limits.notebook:g} s a notebook, "
-            f"{limits.submission:g} s a submission; {limits.memory / 1e9:g} GB a process, {limits.processes} of them.",
+            f"Limits: {limits.call:g} s a call, {limits.cell:g} s a cell, {limits.notebook:g} s a notebook; "
+            f"{limits.memory / 1e9:g} GB a process, {limits.processes} of them.",
         ),
         (
             False,

@@ -116,8 +116,10 @@ def collect(course, student):
             problem = "not handed in; 0 points"
         if problem:
             problems.append(f"{name}: {problem}.")
-        else:
+        if content is not None and not problem:
             files[name] = content
+        elif path in expected and os.path.lexists(path):
+            files[name] = b""  # something is there, but no file to read: the intake calls it unreadable
         if path in others and path.suffix == ".ipynb":
             wanted = ", ".join(f"{released}.ipynb" for released in course.notebooks)
             problems.append(
