@@ -2,9 +2,10 @@
 
 from transform_lab import panel
 
-from .grading import Submission, assignment, grade_notebook, new_seed
+from .grading import assignment, grade_notebook, new_seed
 from .intake import restore
 from .judge import rows
+from .submission import Submission
 
 
 def check_files(course, paths, seed=None, isolated=True):

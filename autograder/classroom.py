@@ -6,7 +6,8 @@ Nothing that one student hands in may stop the others: whatever goes wrong with 
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 
-from .grading import collect, grade_submission, recorded
+from .grading import grade_submission, recorded
+from .submission import collect
 
 AHEAD = 2  # submissions for each worker that are read in advance
 

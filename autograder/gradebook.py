@@ -20,7 +20,7 @@ from sqlalchemy.exc import DatabaseError, OperationalError
 from traitlets.config import PyFileConfigLoader
 
 from .course import ASSIGNMENT, CourseError
-from .grading import timestamp
+from .submission import timestamp
 
 PATIENCE = 60.0  # seconds to wait for a database that somebody else has locked
 

@@ -16,8 +16,9 @@ from traitlets import Bool
 
 from . import sandbox
 from .course import EXPOSED, Course
-from .grading import RECORD, assignment, collect, grade_notebook, new_seed, read
+from .grading import RECORD, assignment, grade_notebook, new_seed
 from .intake import Intake, restore
+from .submission import collect, read
 
 
 class Exporter(NotebookExporter):

@@ -7,9 +7,10 @@ from nbclient import NotebookClient
 
 from autograder.check import check_files
 from autograder.course import Course
-from autograder.grading import Submission, assignment
+from autograder.grading import assignment
 from autograder.intake import restore
 from autograder.judge import judge
+from autograder.submission import Submission
 
 SOLVED = sorted((ROOT / "source/transforms").glob("*.ipynb"))
 RELEASED = sorted((ROOT / "notebooks/transforms").glob("*.ipynb"))

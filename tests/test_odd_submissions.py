@@ -13,8 +13,9 @@ from test_nbgrader import marks, nbgrader
 from autograder import classroom
 from autograder.classroom import grade_class
 from autograder.gradebook import Writer
-from autograder.grading import assignment, collect, grade_submission
+from autograder.grading import assignment, grade_submission
 from autograder.sandbox import Limits
+from autograder.submission import collect
 
 ONE = "1_rotation"
 

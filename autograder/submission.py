@@ -1,0 +1,104 @@
+"""What one student handed in, read into memory: nothing of it is followed, waited for or run.
+
+What is wrong with it (files that are missing, left out or misnamed) is said in words, each with what to do.
+"""
+
+import hashlib
+import os
+import stat
+from dataclasses import dataclass
+
+import dateutil.parser
+
+from .intake import LARGEST
+from .outputs import printable
+
+MOST_FILES = 200  # handed in besides the notebooks
+LARGEST_FILES = 4_000_000  # bytes, all of them together
+
+
+@dataclass(frozen=True)
+class Submission:
+    """One student's files, {path relative to the assignment's folder: bytes}, and what is wrong with them."""
+
+    student: str
+    files: dict
+    problems: tuple = ()
+
+    @property
+    def helpers(self):
+        """The files that notebooks may import or read."""
+        return {path: content for path, content in self.files.items() if not path.endswith(".ipynb")}
+
+    @property
+    def digest(self):
+        """Changes when anything of the submission changes."""
+        total = hashlib.sha256()
+        for path, content in sorted(self.files.items()):
+            total.update(f"{path}\0{len(content)}\0".encode() + content)
+        return total.hexdigest()
+
+
+def collect(course, student):
+    """The Submission in submitted/STUDENT."""
+    folder, files, problems = course.submitted(student), {}, []
+    for name in (f"{name}.ipynb" for name in course.notebooks):
+        if not os.path.lexists(folder / name):
+            problems.append(f"{name}: not handed in; 0 points.")
+            continue
+        content, problem = read(folder / name)
+        files[name] = content or b""  # where nothing can be read, the intake calls the notebook unreadable
+        if problem:
+            problems.append(f"{name}: {problem}.")
+    notebooks, room = len(files), LARGEST_FILES
+    for path in sorted(path for path in folder.rglob("*") if not _ignored(path, folder)):
+        name = printable(path.relative_to(folder).as_posix())
+        if name in files or name.removesuffix(".ipynb") in course.notebooks:
+            continue
+        content, problem = read(path)
+        room -= len(content or b"")
+        if len(files) - notebooks == MOST_FILES or room < 0:
+            problem = f"left out; besides notebooks, {MOST_FILES} files of {LARGEST_FILES / 1e6:g} MB in all are taken"
+        elif name.endswith(".ipynb"):
+            wanted = ", ".join(f"{released}.ipynb" for released in course.notebooks)
+            problem = f"no notebook of this assignment has that name; rename it to one of {wanted} and grade again"
+        if problem:
+            problems.append(f"{name}: {problem}.")
+        else:
+            files[name] = content
+    _, problem = timestamp(course, student)
+    return Submission(student, files, tuple(problems + [problem] if problem else problems))
+
+
+def timestamp(course, student):
+    """(when the work was handed in, as text for nbgrader, or None; what is wrong with timestamp.txt or None)"""
+    content, _ = read(course.submitted(student) / "timestamp.txt")
+    text = (content or b"").decode("utf-8", "replace").strip()
+    try:
+        return (text, None) if text and dateutil.parser.parse(text) else (None, None)
+    except (ValueError, OverflowError):
+        return None, f"timestamp.txt: {text[:60]!r} is no date; graded as if there were none."
+
+
+def read(path):
+    """(the bytes of a regular file or None, what is wrong with it or None); follows no link, waits for nobody."""
+    if path.is_symlink():
+        return None, "left out; it is a link"
+    try:
+        descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
+    except OSError as error:
+        return None, f"left out; it cannot be opened ({error.strerror})"
+    try:
+        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+            return None, "left out; it is no regular file"
+        with open(descriptor, "rb", closefd=False) as file:
+            return file.read(LARGEST + 1), None
+    finally:
+        os.close(descriptor)
+
+
+def _ignored(path, folder):
+    """Folders, caches and hidden files are nobody's work; the grader uses the course's own package."""
+    parts = path.relative_to(folder).parts
+    hidden = any(part.startswith(".") or part == "__pycache__" for part in parts)
+    return hidden or parts[0] == "transform_lab" or (path.is_dir() and not path.is_symlink())
