@@ -69,6 +69,13 @@ def test_cells_give_the_outputs_of_jupyter(sandbox, cell, outputs):
     assert found == outputs
 
 
+def test_helpers_may_have_the_names_of_the_graders_modules():
+    names = ("channel", "executor", "worker", "host")
+    with Sandbox(PACKAGE, {f"{name}.py": f"answer = {name!r}".encode() for name in names}, QUICK) as box:
+        for name in names:
+            assert value(box, f"import {name}; {name}.answer") == repr(name)
+
+
 def test_figures_are_shown_at_the_end_of_the_cell(sandbox):
     with Sandbox(PACKAGE, limits=Limits()) as patient:
         outputs = run(patient, "import matplotlib.pyplot as plt\nplt.plot([1, 2]);")

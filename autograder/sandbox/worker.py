@@ -27,19 +27,22 @@ def main():
     os.environ.update(settings["environment"])
 
     # Loaded here, once for all notebooks: these modules are most of a notebook's start.
-    import executor  # noqa: F401
     import numpy.random  # noqa: F401
     import scipy.spatial.transform  # noqa: F401
+    from executor import Executor
 
     # Only now: a student's own numpy.py must not become the grader's.
     for path, content in settings["files"].items():
         target = Path(path)
         target.parent.mkdir(parents=True, exist_ok=True)
         target.write_bytes(base64.b64decode(content))
+    sys.path.remove(str(Path(__file__).parent))
+    for module in ("channel", "executor", "worker"):
+        del sys.modules[module]  # a student's helper may have that name
     sys.path.insert(0, "")  # as in Jupyter: modules beside the notebook
 
     Channel(control).send({"ready": True})
-    Worker(control, settings["isolated"]).serve()
+    Worker(control, settings["isolated"], Executor).serve()
 
 
 def _limit(limits):
@@ -50,8 +53,8 @@ def _limit(limits):
 class Worker:
     """Starts, interrupts and stops the notebook's process, one at a time."""
 
-    def __init__(self, control, isolated):
-        self.control, self.isolated = control, isolated
+    def __init__(self, control, isolated, executor):
+        self.control, self.isolated, self.executor = control, isolated, executor
         self.notebook = None
 
     def serve(self):
@@ -76,7 +79,7 @@ class Worker:
         if self.notebook == 0:
             self.control.close()
             os.setsid()
-            run_notebook(socket.socket(fileno=descriptor))
+            run_notebook(socket.socket(fileno=descriptor), self.executor())
         os.close(descriptor)
 
     def stop(self):
@@ -96,14 +99,13 @@ class Worker:
         self.notebook = None
 
 
-def run_notebook(connection):
+def run_notebook(connection, executor):
     """The life of a notebook's process: answer requests until the grader hangs up."""
     import numpy as np
-    from executor import Executor
 
     random.seed()
     np.random.seed()
-    executor, grader = Executor(), Channel(connection)
+    grader = Channel(connection)
     actions = {"run_cell": executor.run_cell, "call": executor.call}
     while True:
         try:
