@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from .course import ASSIGNMENT, EXPOSED, Course, CourseError
+from .course import ASSIGNMENT, Course, CourseError
 
 console = Console(highlight=False, soft_wrap=True)
 errors = Console(stderr=True, highlight=False, soft_wrap=True)
@@ -126,15 +126,14 @@ def release(options):
 
 def package(options):
     """The same bytes for the same notebooks: sorted names, one date."""
-    folder = course().release
-    paths = [path for path in sorted(folder.rglob("*")) if path.is_file() and "__pycache__" not in path.parts]
-    if not paths:
+    contents = course().release_contents()
+    if not contents:
         raise CourseError("There is nothing to package: run `python3 -m autograder release` first.")
     with zipfile.ZipFile(options.output, "w", zipfile.ZIP_DEFLATED) as archive:
-        for path in paths:
-            name = Path(ASSIGNMENT, path.relative_to(folder)).as_posix()
-            archive.writestr(zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0)), path.read_bytes(), zipfile.ZIP_DEFLATED)
-    console.print(f"{options.output}: {len(paths)} files.", markup=False)
+        for path, content in contents.items():
+            entry = zipfile.ZipInfo(f"{ASSIGNMENT}/{path}", (1980, 1, 1, 0, 0, 0))
+            archive.writestr(entry, content, zipfile.ZIP_DEFLATED)
+    console.print(f"{options.output}: {len(contents)} files.", markup=False)
     return 0
 
 
@@ -172,7 +171,7 @@ def _protection(here, unsafe):
     if unsafe:
         errors.print(UNPROTECTED)
         return False
-    problem = sandbox.problem() or (EXPOSED if sandbox.exposes(here.root) else None)
+    problem = sandbox.refusal(here.root)
     if problem:
         raise CourseError(f"{problem}\nNothing was graded. To grade without protection: --unsafe-no-sandbox")
     return True

@@ -10,10 +10,6 @@ import nbformat
 from .exercises import EXERCISES
 
 ASSIGNMENT = "transforms"
-EXPOSED = (
-    "The course lies in a folder that notebooks can read in their sandbox (/usr, or that of Python itself), with its "
-    "solutions and gradebook. Move it somewhere else, such as your home folder."
-)
 
 
 class CourseError(Exception):
@@ -45,6 +41,11 @@ class Course:
     @property
     def release(self):
         return self.root / "notebooks" / ASSIGNMENT
+
+    def release_contents(self):
+        """What students get, {path relative to the release: bytes}, in order; empty when nothing was released."""
+        paths = (path for path in sorted(self.release.rglob("*")) if path.is_file() and "__pycache__" not in path.parts)
+        return {path.relative_to(self.release).as_posix(): path.read_bytes() for path in paths}
 
     @property
     def reports(self):

@@ -3,7 +3,6 @@
 import sys
 
 from . import sandbox
-from .course import EXPOSED
 from .sandbox import Limits
 
 
@@ -30,8 +29,8 @@ def examine(course):
             "Not filtered: system calls (no seccomp filter yet); a hole in the kernel would be one in the sandbox.",
         ),
     ]
-    if sandbox.exposes(course.root):
-        lines.append((False, EXPOSED))
+    if exposed := sandbox.refusal(course.root):
+        lines.append((False, exposed))
     released = course.release.is_dir()
     lines.append(
         (released, f"notebooks/ is {'there' if released else 'missing: run `python3 -m autograder release`'}.")

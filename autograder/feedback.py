@@ -1,9 +1,9 @@
 """nbgrader's feedback pages: one HTML file for each graded notebook, made for many students at once."""
 
-import logging
 from concurrent.futures import ProcessPoolExecutor
 
-from .course import ASSIGNMENT
+from . import api
+from .course import ASSIGNMENT, CourseError
 
 
 def generate(course, students, jobs):
@@ -13,14 +13,8 @@ def generate(course, students, jobs):
 
 
 def _one(course, student):
-    from nbgrader.apps import NbGraderAPI
-    from nbgrader.coursedir import CourseDirectory
-
-    from .gradebook import settings
-
-    config = settings(course)
-    logging.getLogger("traitlets").setLevel(logging.CRITICAL)
-    result = NbGraderAPI(CourseDirectory(config=config), config=config).generate_feedback(
-        ASSIGNMENT, student, force=True
-    )
-    return None if result["success"] else (result.get("error") or result.get("log") or "no reason given").strip()[-200:]
+    try:
+        api.call(course, "generate_feedback", ASSIGNMENT, student)
+    except CourseError as error:
+        return str(error)
+    return None

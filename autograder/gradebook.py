@@ -17,17 +17,12 @@ from nbgrader.api import Gradebook, MissingEntry
 from nbgrader.coursedir import CourseDirectory
 from nbgrader.preprocessors import AssignLatePenalties, SaveCells
 from sqlalchemy.exc import DatabaseError, OperationalError
-from traitlets.config import PyFileConfigLoader
 
+from .api import settings
 from .course import ASSIGNMENT, CourseError
 from .submission import timestamp
 
 PATIENCE = 60.0  # seconds to wait for a database that somebody else has locked
-
-
-def settings(course):
-    """nbgrader's configuration of this course: database, late penalties and what else nbgrader_config.py sets."""
-    return PyFileConfigLoader("nbgrader_config.py", path=str(course.root)).load_config()
 
 
 class Writer:

@@ -1,6 +1,6 @@
 """What nbgrader calls: `nbgrader autograde`, and the formgrader's button, through our intake and judge.
 
-nbgrader_config.py names the three classes here. nbgrader keeps its own part: folders, gradebook, late penalties.
+nbgrader_config.py names the two classes here. nbgrader keeps its own part: folders, gradebook, late penalties.
 """
 
 import io
@@ -15,7 +15,7 @@ from nbgrader.preprocessors import NbGraderPreprocessor
 from traitlets import Bool
 
 from . import sandbox
-from .course import EXPOSED, Course
+from .course import Course
 from .grading import RECORD, assignment, grade_notebook, new_seed
 from .intake import Intake, restore
 from .submission import collect, read
@@ -35,7 +35,7 @@ class Exporter(NotebookExporter):
 
     @cached_property
     def assignment(self):
-        problem = sandbox.problem() or (sandbox.exposes(self.course.root) and EXPOSED)
+        problem = sandbox.refusal(self.course.root)
         if problem and not self.unsafe_no_sandbox:
             raise NbGraderException(f"{problem} To grade without protection: --Exporter.unsafe_no_sandbox=True")
         return assignment(self.course, new_seed(), isolated=not self.unsafe_no_sandbox)

@@ -27,16 +27,14 @@ def verdicts(course, students):
     for student in students:
         records = recorded(course, student)
         found[student] = [
-            row for name, released in course.notebooks.items() for row in _rows(records.get(name), released)
+            row
+            for name, released in course.notebooks.items()
+            for row in (records[name]["rows"] if name in records else missing(released))
         ]
         problems[student] = list(
             dict.fromkeys(problem for record in records.values() for problem in record["problems"])
         )
     return found, problems
-
-
-def _rows(record, released):
-    return record["rows"] if record else missing(released)
 
 
 def write(course, students):

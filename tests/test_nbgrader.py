@@ -13,9 +13,9 @@ import pytest
 from nbgrader.api import Gradebook
 from nbgrader.coursedir import CourseDirectory
 
+from autograder.api import settings
 from autograder.course import ASSIGNMENT, Course
 from autograder.demo import enroll
-from autograder.gradebook import settings
 
 
 def nbgrader(course, *arguments):

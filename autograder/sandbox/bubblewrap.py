@@ -25,6 +25,11 @@ REFUSED = (
     "namespaces (for Docker: --security-opt seccomp=unconfined, or run the grader outside the container)."
 )
 
+EXPOSED = (
+    "The course lies in a folder that notebooks can read in their sandbox (/usr, or that of Python itself), with its "
+    "solutions and gradebook. Move it somewhere else, such as your home folder."
+)
+
 
 @cache
 def problem():
@@ -80,6 +85,11 @@ def command(package, megabytes=50):
         arguments += ["setpriv", "--reuid", number, "--regid", number, "--clear-groups"]
         arguments += ["--bounding-set=-all", "--inh-caps=-all", "--no-new-privs"]
     return arguments
+
+
+def refusal(root):
+    """Why the submissions of the course in `root` must not be graded on this machine, or None."""
+    return problem() or (EXPOSED if exposes(root) else None)
 
 
 def exposes(folder):
