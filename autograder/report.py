@@ -11,7 +11,7 @@ from dataclasses import astuple, fields
 from datetime import UTC, datetime
 
 import jinja2
-from transform_lab.verdict import GENERAL
+from transform_lab.diagnosis import GENERAL
 
 from .course import ASSIGNMENT
 from .exercises import EXERCISES

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 from transform_lab import Point, Pose, Quaternion, tft
+from transform_lab.answers import TOLERANCE, agree, parts_of
 from transform_lab.check import call
-from transform_lab.verdict import TOLERANCE, agree, examine, parts_of
+from transform_lab.verdict import examine
 
 from autograder.exercises import EXERCISES, PUBLIC_SEED, key
 from autograder.exercises.cases import either_sign, half_turn

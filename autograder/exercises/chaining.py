@@ -64,6 +64,7 @@ SOME_LEFT_OUT = (
 CHAIN = Exercise(
     name="chain",
     returns="transform",
+    answer="first_T_last",
     reference=chain,
     cases=chain_cases,
     credit={"rotation": 0.4, "translation": 0.4},
@@ -189,6 +190,7 @@ THE_WRONG_WAY_ROUND = (
 TRANSFORM_POSE = Exercise(
     name="transform_pose",
     returns="pose",
+    answer="pose_in_a",
     reference=transform_pose,
     cases=transform_pose_cases,
     credit={"position": 0.5, "orientation": 0.5},
@@ -196,13 +198,13 @@ TRANSFORM_POSE = Exercise(
         Misconception(
             "orientation-not-transformed",
             _with_orientation(lambda a_T_b, pose_in_b: orientation(pose_in_b)),
-            "The position is right, but the orientation is still the one in B.",
+            "The orientation is still the one in B.",
             "If B is tilted in A, can the pose have the same quaternion in both frames?",
         ),
         Misconception(
             "position-not-transformed",
             _with_position(lambda a_T_b, p_in_b: p_in_b),
-            "The orientation is right, but the position is still the one in B.",
+            "The position is still the one in B.",
             "If B's origin is elsewhere in A, can the pose have the same coordinates in both frames?",
         ),
         Misconception(
@@ -220,13 +222,13 @@ TRANSFORM_POSE = Exercise(
         Misconception(
             "position-missing",
             _with_position(lambda a_T_b, p_in_b: (0, 0, 0)),
-            "The orientation is right, but the position is 0, 0, 0.",
+            "The position is 0, 0, 0.",
             "The message has two fields; the transform of the result has a translation.",
         ),
         Misconception(
             "wrong-position",
             _with_position(lambda a_T_b, p_in_b: a_T_b[:3, 3]),
-            "The orientation is right, but the position is that of B's origin.",
+            "The position is that of B's origin.",
             "The pose lies elsewhere in B: its own position has to be in the answer too.",
         ),
         Misconception(
@@ -237,7 +239,7 @@ TRANSFORM_POSE = Exercise(
         Misconception(
             "order-reversed",
             _with_orientation(lambda a_T_b, pose_in_b: quaternion(matrix(pose_in_b)[:3, :3] @ a_T_b[:3, :3])),
-            "The position is right, but the two rotations were multiplied in the wrong order.",
+            "The two rotations were multiplied in the wrong order.",
             "A product of quaternions has an order too, and it is that of the matrices.",
         ),
         Misconception(
@@ -255,20 +257,20 @@ TRANSFORM_POSE = Exercise(
         Misconception(
             "orientation-identity",
             _with_orientation(lambda a_T_b, pose_in_b: (0, 0, 0, 1)),
-            "The position is right, but the orientation is 0, 0, 0, 1, which means no rotation.",
+            "The orientation is 0, 0, 0, 1, which means no rotation.",
             "The pose is turned in B, and B is turned in A: both belong in the answer.",
         ),
         Misconception("orientation-missing", _with_orientation(lambda a_T_b, pose_in_b: (0, 0, 0, 0)), *NO_ORIENTATION),
         Misconception(
             "wrong-orientation",
             _with_orientation(lambda a_T_b, pose_in_b: quaternion(a_T_b[:3, :3])),
-            "The position is right, but the orientation is B's alone.",
+            "The orientation is B's alone.",
             "The pose is turned in B, and B is turned in A: both belong in the answer.",
         ),
         Misconception(
             "rotation-transposed",
             _with_orientation(lambda a_T_b, pose_in_b: quaternion((a_T_b @ matrix(pose_in_b))[:3, :3].T)),
-            "The position is right, but the orientation is the opposite turn.",
+            "The orientation is the opposite turn.",
             "Was a rotation transposed, or a quaternion conjugated, on the way to the answer?",
         ),
         *(

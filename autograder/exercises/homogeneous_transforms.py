@@ -88,11 +88,11 @@ ROWS_FOR_COLUMNS = (
     "The columns of the rotation matrix are B's axes, written in A.",
 )
 NO_TRANSLATION = (
-    "The rotation is right, but the translation is missing.",
+    "The translation is missing.",
     "Where is B's origin in A? The transform has to say so.",
 )
 NO_ROTATION = (
-    "The translation is right, but the rotation is the identity.",
+    "The rotation is the identity.",
     "B's axes need not be parallel to A's: where does the rotation go?",
 )
 TRANSLATION_TURNED = (
@@ -111,6 +111,7 @@ TRANSLATION_NEGATED = (
 MAKE_TRANSFORM = Exercise(
     name="make_transform",
     returns="transform",
+    answer="a_T_b",
     reference=make_transform,
     cases=make_transform_cases,
     credit={"rotation": 0.4, "translation": 0.4},
@@ -186,6 +187,7 @@ LEFT_HANDED = (
 HAND_TRANSFORM = Exercise(
     name="hand_transform",
     returns="transform",
+    answer="a_T_b",
     reference=hand_transform,
     cases=lambda rng: [Case("your hand, rolled to the left and moved closer")],
     credit={"rotation": 0.4, "translation": 0.4},
@@ -338,11 +340,11 @@ BREAKS_AT_HALF_TURN = (
     "A library function knows those cases.",
 )
 NO_ORIENTATION = (
-    "The position is right, but the orientation was never set: it is 0, 0, 0, 0, which is no orientation at all.",
+    "The orientation was never set: it is 0, 0, 0, 0, which is no orientation at all.",
     "A fresh Quaternion() holds four zeros; where does the rotation of the frame go?",
 )
 ORIENTATION_IDENTITY = (
-    "The position is right, but the orientation is 0, 0, 0, 1, which means no rotation.",
+    "The orientation is 0, 0, 0, 1, which means no rotation.",
     "B's axes need not be parallel to A's: where does the rotation of the frame go?",
 )
 ANGLES_AS_QUATERNION = (
@@ -350,7 +352,7 @@ ANGLES_AS_QUATERNION = (
     "A quaternion's components are not angles; look for a function that makes one from a matrix.",
 )
 POSITION_LEFT_OUT = (
-    "The orientation is right, but the position is 0, 0, 0.",
+    "The position is 0, 0, 0.",
     "Where in the matrix does the translation stand? Look at the row and the column you read it from.",
 )
 YAW_ALONE = (
@@ -358,13 +360,14 @@ YAW_ALONE = (
     "Frames can be tilted. Use the whole rotation, not an angle of it.",
 )
 WRONG_POSITION = (
-    "The orientation is right, but the position is not B's origin in A.",
+    "The position is not B's origin in A.",
     "Check each component by itself: which row and which column of the matrix should it come from?",
 )
 
 TRANSFORM_TO_POSE = Exercise(
     name="transform_to_pose",
     returns="pose",
+    answer="a_T_b",
     reference=transform_to_pose,
     cases=transform_to_pose_cases,
     credit={"position": 0.5, "orientation": 0.5},
@@ -456,6 +459,7 @@ def _planar(q):
 POSE_TO_TRANSFORM = Exercise(
     name="pose_to_transform",
     returns="transform",
+    answer="a_T_b",
     reference=pose_to_transform,
     cases=pose_to_transform_cases,
     credit={"rotation": 0.4, "translation": 0.4},
@@ -477,7 +481,7 @@ POSE_TO_TRANSFORM = Exercise(
         Misconception(
             "position-missing",
             lambda pose: make_transform(pose_to_transform(pose)[:3, :3], (0, 0, 0)),
-            "The rotation is right, but the translation is missing.",
+            "The translation is missing.",
             "The pose also says where B's origin is in A: where does that go in the matrix?",
         ),
         Misconception("orientation-identity", _from_pose_with(lambda q: np.eye(3)), *NO_ROTATION),
@@ -563,6 +567,7 @@ IN_THE_WRONG_ORDER = (
 TRANSFORM_POINT = Exercise(
     name="transform_point",
     returns="coordinates",
+    answer="p_in_a",
     reference=transform_point,
     cases=transform_point_cases,
     misconceptions=(

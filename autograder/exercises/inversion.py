@@ -67,6 +67,7 @@ def invert_transform_cases(rng):
 INVERT_TRANSFORM = Exercise(
     name="invert_transform",
     returns="transform",
+    answer="b_T_a",
     reference=invert_transform,
     cases=invert_transform_cases,
     credit={"rotation": 0.3, "translation": 0.5},
@@ -77,13 +78,13 @@ INVERT_TRANSFORM = Exercise(
         Misconception(
             "rotation-not-inverted",
             _inverse_with(lambda R, p: R, lambda R, p: -R.T @ p),
-            "The translation is right, but the rotation is still that of B in A.",
+            "The rotation is still that of B in A.",
             "If B is turned to the left in A, how is A turned in B?",
         ),
         Misconception(
             "rotation-not-inverted",
             _inverse_with(lambda R, p: R.T, lambda R, p: -R @ p),
-            "The rotation is right, but the translation was turned by the rotation that is not inverted.",
+            "The translation was turned by the rotation that is not inverted.",
             "A's origin has to be given along B's axes: which of the two rotations leads from A to B?",
         ),
         Misconception(
@@ -107,13 +108,13 @@ INVERT_TRANSFORM = Exercise(
         Misconception(
             "translation-not-inverted",
             _inverse_with(lambda R, p: R.T, lambda R, p: p),
-            "The rotation is inverted, but the translation is still B's origin in A.",
+            "The translation is still B's origin in A.",
             "The inverse has to say where A's origin is in B.",
         ),
         Misconception(
             "position-missing",
             _inverse_with(lambda R, p: R.T, lambda R, p: (0, 0, 0)),
-            "The rotation is inverted, but the translation is missing.",
+            "The translation is missing.",
             "The inverse has to say where A's origin is in B.",
         ),
         Misconception(
@@ -171,6 +172,7 @@ NOT_INTO_THE_AXES = (
 RELATIVE_TRANSFORM = Exercise(
     name="relative_transform",
     returns="transform",
+    answer="b_T_c",
     reference=relative_transform,
     cases=relative_transform_cases,
     credit={"rotation": 0.4, "translation": 0.4},
@@ -249,6 +251,7 @@ _inv = np.linalg.inv
 OBJECT_IN_GRIPPER = Exercise(
     name="object_in_gripper",
     returns="coordinates",
+    answer="p_in_gripper",
     reference=object_in_gripper,
     cases=object_in_gripper_cases,
     misconceptions=(

@@ -179,13 +179,13 @@ SHARED = [
     (
         "orientation-identity",
         _moved(_right_position, lambda object_pose: (0, 0, 0, 1)),
-        "The position is right, but the orientation is 0, 0, 0, 1: aligned with the base, not with the object.",
+        "The orientation is 0, 0, 0, 1: aligned with the base, not with the object.",
         "Relative to the object the answer is not turned; relative to the base the object itself is.",
     ),
     (
         "rotation-applied-twice",
         _moved(_right_position, _turned_twice),
-        "The position is right, but the object's rotation is in the orientation twice.",
+        "The object's rotation is in the orientation twice.",
         "How is the answer turned relative to the object, before you go to the base frame?",
     ),
     (
@@ -225,6 +225,7 @@ def _behind(wrong):
 PRE_GRASP = Exercise(
     name="pre_grasp",
     returns="pose",
+    answer="base_T_pre_grasp",
     reference=pre_grasp,
     cases=pre_grasp_cases,
     credit={"position": 0.5},
@@ -257,6 +258,7 @@ PRE_GRASP = Exercise(
 WAYPOINT = Exercise(
     name="waypoint",
     returns="pose",
+    answer="base_T_waypoint",
     reference=waypoint,
     cases=waypoint_cases,
     credit={"position": 0.5},
@@ -271,7 +273,7 @@ WAYPOINT = Exercise(
         Misconception(
             "rotation-applied-twice",
             _moved(lambda p, R, offset: p + R @ R @ offset),
-            "The orientation is right, but the offset was turned twice.",
+            "The offset was turned twice.",
             "From the object's frame to the base frame is one step.",
         ),
     ),

@@ -10,7 +10,8 @@ from inspect import signature
 
 import numpy as np
 from transform_lab import codec
-from transform_lab.verdict import PARTS, same
+from transform_lab.answers import PARTS, same
+from transform_lab.diagnosis import error_of
 
 PUBLIC_SEED = 24  # the cases students see; any other seed draws hidden ones
 DIGITS = 12  # decimals kept in the key: far below the tolerance of 1e-6
@@ -29,7 +30,7 @@ class Case:
 class Misconception:
     """One way to get an exercise wrong, as code: `wrong` answers the exercise's arguments as that student would."""
 
-    id: str
+    id: str  # of the design's list; two of them, joined by ";", for two mistakes at once
     wrong: Callable
     says: str  # what the answer shows
     hint: str  # helps without giving the solution away
@@ -40,19 +41,23 @@ class Exercise:
     """One exercise.
 
     name: of the student's function, of its test cell, and of the row in every report
-    returns: the kind of answer, a key of transform_lab.verdict.PARTS
+    returns: the kind of answer, a key of transform_lab.answers.PARTS
+    answer: its name, "b_T_a" or "p_in_a", which tells the frame it is given in; names of parameters do the same
     reference: the right solution
     cases: from a NumPy random generator to a list of Case; the same families for every seed
     misconceptions: see Misconception
     credit: what each part of the answer is worth alone; all parts together are worth 1
+    weights: how much a family of cases counts; 1 for one that is not here
     """
 
     name: str
     returns: str
+    answer: str
     reference: Callable
     cases: Callable[[np.random.Generator], list]
     misconceptions: tuple = ()
     credit: dict = field(default_factory=dict)
+    weights: dict = field(default_factory=dict)
 
     def __post_init__(self):
         unknown = set(self.credit) - set(PARTS[self.returns])
@@ -66,7 +71,9 @@ def key(exercise, seed):
     return {
         "parameters": [p.name for p in signature(exercise.reference).parameters.values() if p.kind != p.VAR_POSITIONAL],
         "returns": exercise.returns,
+        "answer": exercise.answer,
         "credit": exercise.credit,
+        "weights": {case.family: exercise.weights.get(case.family, 1) for case in cases},
         "misconceptions": [{"id": m.id, "says": m.says, "hint": m.hint} for m in exercise.misconceptions],
         "cases": [_case(exercise, case) for case in cases],
     }
@@ -83,7 +90,7 @@ def _case(exercise, case):
         "kwargs": kwargs,
         "expected": expected,
         "wrong": [
-            None if answer != {"raises": True} and same(exercise.returns, answer, expected) else answer
+            None if not error_of(answer) and same(exercise.returns, answer, expected) else answer
             for answer in wrong
         ],
     }
@@ -94,8 +101,8 @@ def _answer(function, args, kwargs):
     with np.errstate(all="ignore"):  # wrong implementations divide by zero; that is their point
         try:
             return _rounded(codec.encode(function(*args, **kwargs)))
-        except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError, np.linalg.LinAlgError):
-            return {"raises": True}
+        except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError, np.linalg.LinAlgError) as error:
+            return {"raises": type(error).__name__}
 
 
 def _rounded(plain):

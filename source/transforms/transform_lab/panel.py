@@ -9,7 +9,7 @@ from html import escape
 import numpy as np
 
 from . import codec
-from .verdict import Unfit, parts_of
+from .answers import Unfit, parts_of
 
 COLOURS = {"right": "#1b7837", "wrong": "#d9690f", "waiting": "#888888"}  # of bar and mark, on white and on black
 
