@@ -68,6 +68,7 @@ CHAIN = Exercise(
     reference=chain,
     cases=chain_cases,
     credit={"rotation": 0.4, "translation": 0.4},
+    weights={"three transforms": 2},
     misconceptions=(
         Misconception(
             "order-reversed",
@@ -194,6 +195,7 @@ TRANSFORM_POSE = Exercise(
     reference=transform_pose,
     cases=transform_pose_cases,
     credit={"position": 0.5, "orientation": 0.5},
+    weights={"tilted frames": 2},
     misconceptions=(
         Misconception(
             "orientation-not-transformed",

@@ -115,6 +115,7 @@ MAKE_TRANSFORM = Exercise(
     reference=make_transform,
     cases=make_transform_cases,
     credit={"rotation": 0.4, "translation": 0.4},
+    weights={"a tilted frame": 2},
     misconceptions=(
         Misconception("translation-in-bottom-row", lambda R, p: make_transform(R.T, p).T, *TRANSLATION_BELOW),
         Misconception("rotation-transposed", lambda R, p: make_transform(R.T, p), *ROWS_FOR_COLUMNS),
@@ -371,6 +372,7 @@ TRANSFORM_TO_POSE = Exercise(
     reference=transform_to_pose,
     cases=transform_to_pose_cases,
     credit={"position": 0.5, "orientation": 0.5},
+    weights={"a tilted frame": 2},
     misconceptions=(
         *(
             Misconception(
@@ -463,6 +465,7 @@ POSE_TO_TRANSFORM = Exercise(
     reference=pose_to_transform,
     cases=pose_to_transform_cases,
     credit={"rotation": 0.4, "translation": 0.4},
+    weights={"a tilted frame": 2},
     misconceptions=(
         *(
             Misconception(
@@ -570,6 +573,7 @@ TRANSFORM_POINT = Exercise(
     answer="p_in_a",
     reference=transform_point,
     cases=transform_point_cases,
+    weights={"a tilted frame": 2},
     misconceptions=(
         Misconception(
             "rotation-transposed",

@@ -71,6 +71,7 @@ INVERT_TRANSFORM = Exercise(
     reference=invert_transform,
     cases=invert_transform_cases,
     credit={"rotation": 0.3, "translation": 0.5},
+    weights={"a tilted frame": 2},
     misconceptions=(
         Misconception("inverse-by-transpose", np.transpose, *INVERSE_BY_TRANSPOSE),
         Misconception("inverse-parts-separately", _parts_separately, *PARTS_SEPARATELY),
@@ -176,6 +177,7 @@ RELATIVE_TRANSFORM = Exercise(
     reference=relative_transform,
     cases=relative_transform_cases,
     credit={"rotation": 0.4, "translation": 0.4},
+    weights={"two tilted frames": 2},
     misconceptions=(
         Misconception(
             "wrong-direction",
@@ -254,6 +256,7 @@ OBJECT_IN_GRIPPER = Exercise(
     answer="p_in_gripper",
     reference=object_in_gripper,
     cases=object_in_gripper_cases,
+    weights={"a tilted camera and a tilted gripper": 2},
     misconceptions=(
         Misconception("inverse-missing", lambda camera, gripper, p: _apply(gripper @ camera, p), *BOTH_AS_THEY_ARE),
         Misconception("inverse-missing", lambda camera, gripper, p: _apply(camera @ gripper, p), *BOTH_AS_THEY_ARE),

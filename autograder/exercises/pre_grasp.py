@@ -229,6 +229,7 @@ PRE_GRASP = Exercise(
     reference=pre_grasp,
     cases=pre_grasp_cases,
     credit={"position": 0.5},
+    weights={"a tilted object": 2},
     misconceptions=(
         *(Misconception(identifier, _behind(wrong), says, hint) for identifier, wrong, says, hint in SHARED),
         Misconception(
@@ -262,6 +263,7 @@ WAYPOINT = Exercise(
     reference=waypoint,
     cases=waypoint_cases,
     credit={"position": 0.5},
+    weights={"a tilted object": 2},
     misconceptions=(
         *(Misconception(identifier, wrong, says, hint) for identifier, wrong, says, hint in SHARED),
         Misconception(

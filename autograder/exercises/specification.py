@@ -69,7 +69,7 @@ def key(exercise, seed):
     """The exercise with the cases drawn from `seed`, as the plain data that `transform_lab.verdict.examine` takes."""
     cases = exercise.cases(np.random.default_rng(seed))
     return {
-        "parameters": [p.name for p in signature(exercise.reference).parameters.values() if p.kind != p.VAR_POSITIONAL],
+        "parameters": [str(p).partition("=")[0] for p in signature(exercise.reference).parameters.values()],
         "returns": exercise.returns,
         "answer": exercise.answer,
         "credit": exercise.credit,

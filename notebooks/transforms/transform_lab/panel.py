@@ -7,9 +7,10 @@ import re
 from html import escape
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from . import codec
-from .verdict import Unfit, parts_of
+from .answers import Unfit, agree, kind_of, parts_of
 
 COLOURS = {"right": "#1b7837", "wrong": "#d9690f", "waiting": "#888888"}  # of bar and mark, on white and on black
 
@@ -20,8 +21,9 @@ def title(verdict):
         return f"{verdict.exercise}: all right."
     if not verdict.done:
         return f"{verdict.exercise}: not done yet."
-    if len(verdict.parts) > 1 and 0 < sum(verdict.parts.values()) < len(verdict.parts) * verdict.cases:
-        found = [f"{part} {_how_often(verdict, part)}" for part in verdict.parts]
+    if 0 < sum(verdict.parts.values()) < len(verdict.parts) * verdict.cases:
+        several = len(verdict.parts) > 1
+        found = [f"{part if several else ''} {_how_often(verdict, part)}".strip() for part in verdict.parts]
         return f"{verdict.exercise}: not right yet ({', '.join(found)})."
     return f"{verdict.exercise}: not right yet."
 
@@ -72,76 +74,121 @@ def _sentences(verdict, points):
     return sentences
 
 
+# --- one case in numbers --------------------------------------------------------------------------------------------
+
+
 def _example(verdict, numbers):
+    """The first case that is not right: what the function was given, what was expected, what came."""
     case = verdict.failing
     if case is None:
         return []
     if not numbers:
         return [f"Kind of case: {case['family']}."]
+    names = verdict.parameters
+    if names and names[-1].startswith("*"):
+        names = [f"{names[-1][1:]}[{index}]" for index in range(len(case["args"]))]
+    given = {name: codec.decode(plain) for name, plain in (*zip(names, case["args"]), *case["kwargs"].items())}
     lines = [f"For example, {case['family']}:"]
-    for position, plain in enumerate(case["args"]):
-        named = position < len(verdict.parameters)
-        label = verdict.parameters[position] if named else f"argument {position + 1}"
-        lines += _labelled(f"  {label}", codec.decode(plain))
-    for keyword, plain in case["kwargs"].items():
-        lines += _labelled(f"  {keyword}", codec.decode(plain))
-    if case["args"] or case["kwargs"]:  # without arguments, the expected answer is the solution
-        lines += _labelled("  expected", codec.decode(case["expected"]))
-    if verdict.answer is not None:
-        lines += _labelled("  yours", verdict.answer)
-        lines += _difference(verdict.answer, codec.decode(case["expected"]))
-    return lines
-
-
-def _difference(got, expected):
-    """A pose's errors as a distance and an angle, which say more than digits; an array's as its largest one."""
-    if isinstance(got, np.ndarray) and isinstance(expected, np.ndarray) and got.shape == expected.shape:
-        return [f"  largest difference between two numbers: {np.abs(got - expected).max():.1g}"]
+    for name, value in given.items():
+        lines += _labelled(name, value)
+    expected = codec.decode(case["expected"])
+    if not given:  # the expected answer of a function without arguments is the solution
+        return lines + (_labelled("yours", verdict.answer) if verdict.answer is not None else [])
     try:
-        one, other = parts_of("pose", got), parts_of("pose", expected)
+        parts = parts_of(verdict.returns, verdict.answer), parts_of(verdict.returns, expected)
     except Unfit:
-        return []
-    distance = np.linalg.norm(one["position"] - other["position"])
-    lines = [f"  distance between the positions: {round(distance, 9):.4g} m"]
-    lengths = np.linalg.norm(one["orientation"]) * np.linalg.norm(other["orientation"])
-    if lengths > 0:
-        cosine = min(1.0, abs(float(one["orientation"] @ other["orientation"])) / lengths)
-        lines.append(f"  angle between the orientations: {np.degrees(2 * np.arccos(cosine)):.4g} degrees")
+        lines += _labelled("expected", expected)
+        return lines + (_labelled("yours", verdict.answer) if verdict.answer is not None else [])
+    return lines + _compared(verdict.returns, *parts)
+
+
+def _compared(returns, got, expected):
+    """The expected answer against the student's, part by part, with how far each is off."""
+    off = {part: _off(part, got[part], right) for part, right in expected.items()}
+    if returns == "truth":
+        return [f"  {who:10}{bool(value['answer'])}" for who, value in (("expected", expected), ("yours", got))]
+    if "rotation" in expected:
+        left, right = _in_columns(_whole(expected), _whole(got))
+        indent = len(left[0]) + 4
+        lines = [f"  {'expected':{indent}}yours", *(f"  {one:{indent}}{other}" for one, other in zip(left, right))]
+        return [*lines, *(f"  {part}: {what}" for part, what in off.items())]
+    width = max(len(part) for part in expected) + 2 if len(expected) > 1 else 0
+    lines = []
+    for part, right in expected.items():
+        lines.append(f"  {part if width else '':{width}}expected  {_row(right)}")
+        lines.append(f"  {'':{width}}yours     {_row(got[part])}   {off[part]}")
     return lines
+
+
+def _whole(parts):
+    """The matrix of a rotation's or a transform's parts."""
+    if "translation" not in parts:
+        return parts["rotation"]
+    return np.vstack([np.column_stack([parts["rotation"], parts["translation"]]), parts["bottom row"]])
+
+
+def _off(part, got, expected):
+    """How far one part is off, in words: metres for a place, degrees for a turn."""
+    if agree(part, got, expected):
+        return "right"
+    if part in ("position", "translation", "coordinates"):
+        return f"off by {np.linalg.norm(got - expected):.3g} m"
+    if part == "rotation":
+        if np.abs(got.T @ got - np.eye(3)).max() > 1e-3:
+            return "no rotation: its columns are not all of length 1 and at right angles"
+        if np.linalg.det(got) < 0:
+            return "no rotation, but a mirror image: the axes are left-handed"
+        return f"off by {_degrees(Rotation.from_matrix(got), Rotation.from_matrix(expected))}"
+    if part == "orientation":
+        length = np.linalg.norm(got)
+        if length < 1e-9:
+            return "no orientation: all four numbers are 0"
+        turn = _degrees(Rotation.from_quat(got), Rotation.from_quat(expected))
+        return f"off by {turn}" if abs(length - 1) < 1e-3 else f"off by {turn}, and of length {length:.3g}"
+    return "wrong"
+
+
+def _degrees(one, other):
+    return f"{np.degrees((one.inv() * other).magnitude()):.3g} degrees"
 
 
 def _labelled(label, value):
+    """Lines that show a value of any kind under its name."""
     if hasattr(value, "position") and hasattr(value, "orientation"):
-        return [
-            f"{label}:",
-            f"    position     {_fields(value.position, 'xyz')}",
-            f"    orientation  {_fields(value.orientation, 'xyzw')}",
-        ]
+        return [f"  {label}", f"    position     {_row(value.position)}", f"    orientation  {_row(value.orientation)}"]
     if isinstance(value, (list, np.ndarray)):
         try:
             array = np.array(value, dtype=float)
         except (TypeError, ValueError):
-            return [f"{label}: {value}"]
-        if array.ndim > 1:
-            rows = np.array2string(array.round(4) + 0.0, suppress_small=True, floatmode="maxprec").splitlines()
-            return [f"{label}:", *(f"    {row}" for row in rows)]
-        return [f"{label}: {_vector(array)}"]
+            return [f"  {label}  {str(value)[:200]}"]
+        if array.ndim == 2:
+            return [f"  {label}", *(f"    {row}" for row in _in_columns(array)[0])]
+        return [f"  {label}  {_row(array)}" if array.ndim == 1 else f"  {label}  {kind_of(array)}"]
     if isinstance(value, codec.Other):
-        return [f"{label}: an object of type {value.type_name}"]
-    return [f"{label}: {round(value, 4) if isinstance(value, float) else value}"]
+        return [f"  {label}  an object of type {value.type_name}"]
+    return [f"  {label}  {_short(value)}"]
 
 
-def _fields(message, letters):
-    if not all(hasattr(message, letter) for letter in letters):
-        return str(message)
-    return "  ".join(f"{letter} {_short(getattr(message, letter))}" for letter in letters)
+def _in_columns(*matrices):
+    """For each matrix the lines that show its rows, all columns of the same width."""
+    cells = [[[_short(number) for number in row] for row in matrix] for matrix in matrices]
+    width = max(len(cell) for rows in cells for row in rows for cell in row)
+    return [["  ".join(f"{cell:>{width}}" for cell in row) for row in rows] for rows in cells]
 
 
-def _vector(array):
-    return "[" + ", ".join(_short(number) for number in array) + "]"
+def _row(value):
+    """A vector, a quaternion or a message's fields in one line, each number with its letter where it has one."""
+    if isinstance(value, np.ndarray):
+        value = value.reshape(-1).tolist()
+    elif hasattr(value, "x"):
+        value = [getattr(value, letter) for letter in "xyzw" if hasattr(value, letter)]
+    if not isinstance(value, list):
+        return str(value)
+    letters = "xyzw" if len(value) in (3, 4) else [""] * len(value)
+    return "   ".join(f"{letter} {_short(number)}".strip() for letter, number in zip(letters, value))
 
 
 def _short(number):
-    if isinstance(number, (bool, int, float, np.number)):
+    if isinstance(number, (float, np.floating)):
         return f"{round(float(number), 4) + 0.0:g}"
     return str(number)

@@ -8,11 +8,12 @@ import io
 import json
 import os
 import sys
+import traceback
 from contextlib import contextmanager, redirect_stdout
 from functools import cache
 from pathlib import Path
 
-from . import codec, panel
+from . import codec, comparison, panel
 from .verdict import LOOP, Reply, Verdict, examine
 
 MOST_PRINTED = 200  # characters of what a function prints while it is checked
@@ -85,16 +86,16 @@ def _raised_in(function, error):
 
 
 def one_line(error):
-    """An exception in one line of bounded length, with the student's line number where there is one."""
-    line, step = "", error.__traceback__
-    while step is not None:
-        if step.tb_frame.f_code.co_filename.startswith(("<ipython-input", "/tmp/ipykernel", "<cell")) or (
-            "ipykernel_" in step.tb_frame.f_code.co_filename
-        ):
-            line = f" (line {step.tb_lineno} of the cell)"
-        step = step.tb_next
-    message = " ".join(str(error).split())
-    return f"{type(error).__name__}: {message}"[:300] + line
+    """An exception in one line of bounded length, with the student's own line in which it came up, if there is one."""
+    where = ""
+    for step in traceback.extract_tb(error.__traceback__):
+        if step.filename.startswith("<ipython-input") or "ipykernel_" in step.filename:
+            where = f", in your line {step.lineno}: {_shortened(step.line, 80)}"
+    return _shortened(f"{type(error).__name__}: {' '.join(str(error).split())}", 300) + where
+
+
+def _shortened(text, most):
+    return text if len(text) <= most else f"{text[: most - 1]}…"
 
 
 @cache
@@ -118,10 +119,11 @@ def _show(verdict, points):
         return
     from IPython.display import display
 
+    pictured = comparison.scene(verdict)
     display(
         {
             "text/plain": panel.text(verdict, None if verdict.right else points),
-            "text/html": panel.html(verdict),
+            "text/html": panel.html(verdict) + (pictured.figure() if pictured else ""),
         },
         raw=True,
     )

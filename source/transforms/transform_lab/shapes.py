@@ -105,13 +105,18 @@ def arrow(tail, tip, color, shaft, head, head_length):
     return rod(tail, neck, shaft, color) + rod(neck, tip, head, color, "cone")
 
 
-def frame_node(name, transform, length):
-    """Return a Node with a frame's three axes, the letters at their tips, and its name."""
+def frame_node(name, transform, length, ghost=False):
+    """Return a Node with a frame's three axes, the letters at their tips, and its name.
+
+    A ghost is translucent and thicker, so that a solid frame at the same place is seen inside it.
+    """
     node = Node(path("frames", name), transform)
+    thick = length * (2.2 if ghost else 1)
     for letter, axis, color in zip("XYZ", np.eye(3), (X_RED, Y_GREEN, Z_BLUE)):
-        node.solids += arrow((0, 0, 0), length * axis, color, 0.05 * length, 0.13 * length, 0.24 * length)
-        node.labels.append(Label(letter, 1.12 * length * axis, color))
-    node.solids.append(placed("sphere", (0, 0, 0), 0.08 * length, DARK))
+        shown = translucent(color) if ghost else color
+        node.solids += arrow((0, 0, 0), length * axis, shown, 0.05 * thick, 0.13 * thick, 0.24 * length)
+        node.labels.append(Label(letter, (1.25 if ghost else 1.12) * length * axis, color))
+    node.solids.append(placed("sphere", (0, 0, 0), 0.08 * thick, translucent(DARK) if ghost else DARK))
     node.labels.append(Label(name, np.zeros(3), beside=True))
     return node
 
@@ -119,6 +124,11 @@ def frame_node(name, transform, length):
 def xyz(message):
     """Return the x, y, z of a Point or Vector3 as an array."""
     return numbers([message.x, message.y, message.z], type(message).__name__, lengths=(3,))
+
+
+def translucent(color):
+    """Return a colour as ghosts have it."""
+    return (*color[:3], 0.3 * color[3])
 
 
 def rgba(color):

@@ -12,7 +12,21 @@ import numpy as np
 
 from . import tft
 from .messages import Marker
-from .shapes import GREY, Label, Node, arrow, draw_marker, frame_node, marker_type, path, placed, rgba, rod, xyz
+from .shapes import (
+    GREY,
+    Label,
+    Node,
+    arrow,
+    draw_marker,
+    frame_node,
+    marker_type,
+    path,
+    placed,
+    rgba,
+    rod,
+    translucent,
+    xyz,
+)
 from .validation import numbers, rigid_transform, row_text
 
 __all__ = ["Viewer"]
@@ -27,6 +41,7 @@ class _Frame:
     parent: str | None
     transform: np.ndarray  # parent_T_frame
     length: float | None
+    ghost: bool = False
 
 
 @dataclass
@@ -34,6 +49,7 @@ class _Point:
     frame: str
     position: np.ndarray
     color: tuple
+    ghost: bool = False
 
 
 @dataclass
@@ -69,12 +85,12 @@ class Viewer:
 
     # Filling the scene
 
-    def add_frame(self, name, transform, parent=None, length=None):
+    def add_frame(self, name, transform, parent=None, length=None, ghost=False):
         """Add the frame `name`, or replace it: `transform` describes it in the frame `parent`.
 
         `transform` is a 4x4 homogeneous transform parent_T_name, a Pose, or a PoseStamped, whose header.frame_id then
         is the parent. The parent is the fixed frame unless given, and must be known. `length` is how long the axes are
-        drawn, in metres; by default the size of the scene decides.
+        drawn, in metres; by default the size of the scene decides. A `ghost` is translucent.
 
         Raises ValueError for a parent that is not known, and for what is no rigid transform, naming the property that
         fails: shape, NaN, bottom row, columns at right angles and of length 1, determinant +1, quaternion of length 1.
@@ -97,16 +113,17 @@ class Viewer:
             matrix = rigid_transform(transform, f"add_frame({name!r}): the transform")
         if length is not None and not length > 0:
             raise ValueError(f"add_frame({name!r}): length must be above 0; got {length!r}")
-        self._frames[name] = _Frame(parent, matrix, length)
+        self._frames[name] = _Frame(parent, matrix, length, ghost)
 
-    def add_point(self, name, position, frame=None, color=ORANGE):
+    def add_point(self, name, position, frame=None, color=ORANGE, ghost=False):
         """Add the point `name`, or replace it: `position` is a Point or 3 numbers in `frame`.
 
         By default the frame is the fixed one. Four numbers are taken as homogeneous coordinates. `color` is a
-        ColorRGBA, or 3 or 4 numbers from 0 to 1.
+        ColorRGBA, or 3 or 4 numbers from 0 to 1. A `ghost` is translucent, and larger.
         """
         frame = self._known(self.fixed_frame if frame is None else frame, f"add_point({name!r}): the frame")
-        self._points[name] = _Point(frame, _position(position, f"add_point({name!r}): the position"), rgba(color))
+        position = _position(position, f"add_point({name!r}): the position")
+        self._points[name] = _Point(frame, position, rgba(color), ghost)
 
     def add_arrow(self, name, tip, tail=(0, 0, 0), frame=None, color=PURPLE):
         """Add the arrow `name`, or replace it: from `tail` to `tip`, each a Point or 3 numbers in `frame`.
@@ -158,13 +175,13 @@ class Viewer:
         """Return the scene as a page of its own (text): write it to a file and open that in a browser."""
         return (
             '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>Frames</title></head>'
-            f'<body style="font-family: sans-serif">{self._figure()}</body></html>\n'
+            f'<body style="font-family: sans-serif">{self.figure()}</body></html>\n'
         )
 
     def _repr_mimebundle_(self, include=None, exclude=None):
         bundle = {"text/plain": self.description()}
         if not os.environ.get("TRANSFORM_LAB_GRADING"):  # nobody looks while a notebook is graded
-            bundle["text/html"] = self._figure()
+            bundle["text/html"] = self.figure()
         return bundle
 
     def __repr__(self):
@@ -203,8 +220,8 @@ class Viewer:
             return np.eye(4)
         return self._in_fixed_frame(frame.parent) @ frame.transform
 
-    def _figure(self):
-        """Return the HTML of the interactive page over the still picture."""
+    def figure(self):
+        """Return the scene as a piece of HTML: the interactive page over the still picture."""
         from . import page, picture
         from .camera import Camera
 
@@ -231,7 +248,7 @@ class Viewer:
         given = [frame.length for frame in self._frames.values() if frame.length]
         length = max(given) if given else _round_number(0.3 * size) if size > 0 else 1.0
 
-        nodes = [frame_node(name, where[name], frame.length or length) for name, frame in self._frames.items()]
+        nodes = [frame_node(name, where[name], f.length or length, f.ghost) for name, f in self._frames.items()]
         seen = np.array(ends + [_moved(n.transform, label.position) for n in nodes for label in n.labels])
         thickness = 0.05 * length
         for name, frame in self._frames.items():
@@ -239,7 +256,8 @@ class Viewer:
                 line = rod(where[frame.parent][:3, 3], where[name][:3, 3], 0.25 * thickness, GREY)
                 nodes.append(Node(path("links", name), np.eye(4), line))
         for name, p in self._points.items():
-            ball = placed("sphere", p.position, 3 * thickness, p.color)
+            size, color = (5 * thickness, translucent(p.color)) if p.ghost else (3 * thickness, p.color)
+            ball = placed("sphere", p.position, size, color)
             label = Label(name, p.position, _readable(p.color), beside=True)
             nodes.append(Node(path("points", name), where[p.frame], [ball], labels=[label]))
         for name, a in self._arrows.items():

@@ -1,0 +1,171 @@
+"""Every syntactic mutant of a function: one operator, constant, index, sign, name of a field, argument or statement changed.
+
+Mutation testing asks of a set of cases what Clegg, McMinn and Fraser (ICSE SEET 2021) ask of a grading test suite: is
+there a wrong program that it takes for right?
+"""
+
+import ast
+import inspect
+import textwrap
+from collections import Counter
+
+AXES = {"x": "y", "y": "z", "z": "x", "w": "x"}
+SWAPPED = {
+    ast.Add: [ast.Sub], ast.Sub: [ast.Add], ast.Mult: [ast.Div, ast.Add], ast.Div: [ast.Mult], ast.MatMult: [ast.Mult],
+    ast.Lt: [ast.LtE, ast.Gt], ast.LtE: [ast.Lt, ast.GtE], ast.Gt: [ast.GtE, ast.Lt], ast.GtE: [ast.Gt, ast.LtE],
+    ast.Eq: [ast.NotEq], ast.NotEq: [ast.Eq], ast.And: [ast.Or], ast.Or: [ast.And],
+}  # fmt: skip
+
+
+def mutants(function, package=None):
+    """[(what was changed, the changed function)]; the same change in a second place is told by " [2]".
+
+    Functions of `package` (the beginning of a module's name) that it calls are part of it, and mutated like it.
+    """
+    found, times = [], Counter()
+    for what, mutant in _mutants(function, package):
+        times[what] += 1
+        found.append((what if times[what] == 1 else f"{what} [{times[what]}]", mutant))
+    return found
+
+
+def _mutants(function, package):
+    functions = _with_those_it_calls(function, package)
+    body = [ast.parse(textwrap.dedent(inspect.getsource(each))).body[0] for each in functions]
+    namespace = {name: value for each in reversed(functions) for name, value in each.__globals__.items()}
+    tree = ast.Module(body=body, type_ignores=[])
+    for definition in body:
+        if ast.get_docstring(definition) is not None:
+            del definition.body[0]
+        for holder, index, node in _places(definition):
+            for changed in _variants(node):
+                change = f"{ast.unparse(node)} -> {_text(changed)}"
+                if ast.unparse(node) == _text(changed):
+                    continue
+                holder[index] = changed
+                try:
+                    yield f"{definition.name}: {change}", _made(tree, namespace, function.__name__)
+                finally:
+                    holder[index] = node
+        for statements in _blocks(definition):
+            for index in range(len(statements)) if len(statements) > 1 else ():
+                dropped = statements.pop(index)
+                try:
+                    yield f"{definition.name}: without {ast.unparse(dropped)}", _made(tree, namespace, function.__name__)
+                finally:
+                    statements.insert(index, dropped)
+
+
+def _with_those_it_calls(function, package):
+    found, waiting = [], [function]
+    while waiting:
+        each = waiting.pop()
+        if each in found:
+            continue
+        found.append(each)
+        for name in each.__code__.co_names if package else ():
+            called = each.__globals__.get(name)
+            if inspect.isfunction(called) and called.__module__.startswith(package):
+                waiting.append(called)
+    return found
+
+
+def _made(tree, namespace, name):
+    """The function `name` of the changed source; None when Python does not take it."""
+    made = dict(namespace)
+    try:
+        exec(compile(ast.fix_missing_locations(tree), "<mutant>", "exec"), made)
+    except (SyntaxError, ValueError, TypeError):
+        return None
+    return made[name]
+
+
+class _Field(list):
+    """One field of a node, written to like a list."""
+
+    def __init__(self, node, name):
+        self.node, self.name = node, name
+
+    def __setitem__(self, index, value):
+        setattr(self.node, self.name, value)
+
+
+def _places(tree):
+    """(holder, index, node) for every expression below `tree`, with what holds it."""
+    for parent in list(ast.walk(tree)):
+        for name, value in list(ast.iter_fields(parent)):
+            if isinstance(value, ast.expr):
+                yield _Field(parent, name), 0, value
+            elif isinstance(value, list):
+                for index, item in enumerate(value):
+                    if isinstance(item, ast.expr):
+                        yield value, index, item
+
+
+def _text(node):
+    return ast.unparse(ast.fix_missing_locations(node))
+
+
+def _blocks(tree):
+    for parent in ast.walk(tree):
+        for name in ("body", "orelse"):
+            statements = getattr(parent, name, None)
+            if isinstance(statements, list) and statements and isinstance(statements[0], ast.stmt):
+                yield statements
+
+
+def _variants(node):
+    """Nodes that may stand in the place of this one."""
+    kind = type(node)
+    if kind is ast.BinOp:
+        yield from (ast.BinOp(node.left, other(), node.right) for other in SWAPPED.get(type(node.op), []))
+        if not isinstance(node.op, (ast.Add, ast.Mult)):
+            yield ast.BinOp(node.right, node.op, node.left)
+        yield from (node.left, node.right)
+        yield ast.BinOp(node.left, node.op, ast.UnaryOp(ast.USub(), node.right))
+    elif kind is ast.UnaryOp:
+        yield node.operand
+    elif kind is ast.BoolOp:
+        yield from (ast.BoolOp(other(), node.values) for other in SWAPPED[type(node.op)])
+        yield from (ast.BoolOp(node.op, [v for v in node.values if v is not value]) for value in node.values)
+    elif kind is ast.Compare:
+        for other in SWAPPED.get(type(node.ops[0]), []):
+            yield ast.Compare(node.left, [other(), *node.ops[1:]], node.comparators)
+    elif kind is ast.Constant:
+        yield from (ast.Constant(value) for value in _other_constants(node.value))
+    elif kind is ast.Attribute and isinstance(node.ctx, ast.Load):
+        if node.attr == "T":
+            yield node.value
+        if node.attr in AXES:
+            yield ast.Attribute(node.value, AXES[node.attr], node.ctx)
+    elif kind is ast.Subscript and isinstance(node.ctx, ast.Load):
+        yield node.value
+    elif kind in (ast.List, ast.Tuple) and isinstance(node.ctx, ast.Load):
+        for index in range(len(node.elts) - 1):
+            swapped = list(node.elts)
+            swapped[index : index + 2] = reversed(swapped[index : index + 2])
+            yield kind(swapped, node.ctx)
+    elif kind is ast.Call:
+        yield from _other_calls(node)
+    elif kind is ast.Name and isinstance(node.ctx, ast.Load):
+        yield ast.UnaryOp(ast.USub(), node)
+
+
+def _other_constants(value):
+    if isinstance(value, bool):
+        yield not value
+    elif isinstance(value, (int, float)):
+        yield from dict.fromkeys((value + 1, value - 1, -value, 0 * value) if value else (1, -1))
+    elif isinstance(value, str):
+        yield from (other for other in "xyz" if value in ("x", "y", "z") and other != value)
+
+
+def _other_calls(node):
+    for index in range(len(node.args) - 1):
+        swapped = list(node.args)
+        swapped[index : index + 2] = reversed(swapped[index : index + 2])
+        yield ast.Call(node.func, swapped, node.keywords)
+    if len(node.args) == 1 and not isinstance(node.args[0], ast.Starred):
+        yield node.args[0]
+    for index in range(len(node.keywords)):
+        yield ast.Call(node.func, node.args, node.keywords[:index] + node.keywords[index + 1 :])
