@@ -39,6 +39,10 @@ GENERAL = {
         "Your quaternion has the right direction, but its length is not 1.",
         "An orientation is a unit quaternion: divide by its length.",
     ),
+    "rounded": (
+        "Your answer is right, but rounded.",
+        "Return all the digits there are; round when you print.",
+    ),
 }
 TRY_BY_HAND = "Call it yourself, in a cell of its own, with arguments of the kind that the docstring describes."
 PRINT_IS_NOT_RETURN = "`print` shows a value to you; only `return` hands it to whoever called the function."
@@ -157,6 +161,8 @@ def _general(problems, replies):
 
 def _part_by_part(exercise, outcomes):
     """The Diagnosis of each wrong part of the answer by itself, together; none unless every one has exactly one."""
+    if exercise["returns"] == "truth":
+        return Diagnosis()
     parts = PARTS[exercise["returns"]]
     wrong = [part for part in parts if any(part not in outcome.parts for outcome in outcomes)]
     expected = [parts_of(exercise["returns"], codec.decode(case["expected"])) for case in exercise["cases"]]
@@ -171,8 +177,11 @@ def _part_by_part(exercise, outcomes):
                 candidates[part].append(misconception)
     found = []
     for part in wrong:
-        if part == "orientation" and _right_direction(outcomes, expected):
-            candidates[part].append({"id": "not-normalised", **dict(zip(("says", "hint"), GENERAL["not-normalised"]))})
+        pairs = [(outcome.got[part], right[part]) for outcome, right in zip(outcomes, expected)]
+        for identifier, fits in (("not-normalised", _not_normalised), ("rounded", _rounded)):
+            if fits(part, pairs):
+                says, hint = GENERAL[identifier]
+                candidates[part].append({"id": identifier, "says": says, "hint": hint})
         found.append(_one_of(candidates[part]))
     return Diagnosis() if None in found else _together(found)
 
@@ -191,10 +200,21 @@ def _parts_of_misconception(index, exercise, expected):
     return answers
 
 
-def _right_direction(outcomes, expected):
-    """Whether all quaternions are right but for their length."""
-    for outcome, right in zip(outcomes, expected):
-        length = np.linalg.norm(outcome.got["orientation"])
-        if length <= TOLERANCE or not agree("orientation", outcome.got["orientation"] / length, right["orientation"]):
-            return False
-    return True
+def _not_normalised(part, pairs):
+    """Whether all these quaternions are right but for their length."""
+    lengths = [np.linalg.norm(got) for got, _ in pairs]
+    return part == "orientation" and all(
+        length > TOLERANCE and agree(part, got / length, right) for length, (got, right) in zip(lengths, pairs)
+    )
+
+
+def _rounded(part, pairs):
+    """Whether all these values are the right ones, rounded to some number of decimals."""
+    for step in (10.0**-decimals for decimals in range(1, 6)):
+        if all(
+            np.all(np.abs(got - step * np.round(got / step)) < 1e-9)
+            and any(np.abs(got - sign * right).max() <= 0.5 * step + 1e-9 for sign in ((1, -1) if part == "orientation" else (1,)))
+            for got, right in pairs
+        ):
+            return True
+    return False

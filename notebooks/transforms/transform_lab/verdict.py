@@ -87,7 +87,7 @@ def examine(name, exercise, call):
         replies.append(reply)
         if reply.outcome not in ("returned", "raised"):
             return _unfinished(name, reply, case)
-    outcomes = [_compare(returns, case, reply) for case, reply in zip(cases, replies)]
+    outcomes = [compare(returns, case, reply) for case, reply in zip(cases, replies)]
     verdict = Verdict(name, cases=len(cases), credit=_credit(exercise, outcomes), returns=returns)
     verdict.wanted, verdict.parameters = exercise["answer"], tuple(exercise["parameters"])
     verdict.parts = {part: sum(part in outcome.parts for outcome in outcomes) for part in PARTS[returns]}
@@ -118,7 +118,7 @@ def _unfinished(name, reply, case):
     return Verdict(name, "killed", says="Your function had to be stopped: it used too much.", hint=hint, failing=case)
 
 
-def _compare(returns, case, reply):
+def compare(returns, case, reply):
     """The Outcome of one case."""
     if reply.outcome == "raised":
         return Outcome(problem=("", reply.error))

@@ -90,7 +90,7 @@ def one_line(error):
     where = ""
     for step in traceback.extract_tb(error.__traceback__):
         if step.filename.startswith("<ipython-input") or "ipykernel_" in step.filename:
-            where = f", in your line {step.lineno}: {_shortened(step.line, 80)}"
+            where = f", in your line {step.lineno}: `{_shortened(step.line, 80)}`"
     return _shortened(f"{type(error).__name__}: {' '.join(str(error).split())}", 300) + where
 
 

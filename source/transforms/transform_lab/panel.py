@@ -88,17 +88,17 @@ def _example(verdict, numbers):
     if names and names[-1].startswith("*"):
         names = [f"{names[-1][1:]}[{index}]" for index in range(len(case["args"]))]
     given = {name: codec.decode(plain) for name, plain in (*zip(names, case["args"]), *case["kwargs"].items())}
+    yours = _labelled("yours", verdict.answer) if verdict.answer is not None else []
+    if not given:  # the expected answer of a function without arguments is the solution
+        return yours
     lines = [f"For example, {case['family']}:"]
     for name, value in given.items():
         lines += _labelled(name, value)
     expected = codec.decode(case["expected"])
-    if not given:  # the expected answer of a function without arguments is the solution
-        return lines + (_labelled("yours", verdict.answer) if verdict.answer is not None else [])
     try:
         parts = parts_of(verdict.returns, verdict.answer), parts_of(verdict.returns, expected)
     except Unfit:
-        lines += _labelled("expected", expected)
-        return lines + (_labelled("yours", verdict.answer) if verdict.answer is not None else [])
+        return lines + _labelled("expected", expected) + yours
     return lines + _compared(verdict.returns, *parts)
 
 
