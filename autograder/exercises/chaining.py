@@ -3,6 +3,7 @@
 from functools import reduce
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from .cases import (
     either_sign,
@@ -23,8 +24,16 @@ from .cases import (
     vector,
     wide_turn,
 )
-from .homogeneous_transforms import ENTRY_BY_ENTRY, NO_ORIENTATION, QUATERNION_ORDER
-from .specification import Case, Exercise, Misconception
+from .homogeneous_transforms import (
+    BOTTOM_ROW,
+    BREAKS_AT_HALF_TURN,
+    ENTRY_BY_ENTRY,
+    INVERSE_RETURNED,
+    NO_ORIENTATION,
+    ORDERS,
+    QUATERNION_ORDER,
+)
+from .specification import Anything, Case, Exercise, Misconception, together
 
 # --- chain ----------------------------------------------------------------------------------------------------------
 
@@ -39,11 +48,13 @@ def chain_cases(rng):
 
     along_axes = [transform(R, vector(rng)) for R in signed_permutations()]
     shuffled = [along_axes[index] for index in rng.permutation(24)]
+    first, second, third = some(3)
+    still = np.eye(4)
     families = {
-        "one or two transforms": [some(2), some(1), some(2), some(1)],
+        "one or two transforms": [(first, second), some(1), (first, third), some(1), (still, second), (first, first)],
         "two frames, each turned by quarter turns": list(zip(shuffled[:12], shuffled[12:])),
-        "three transforms": [some(3), some(3), some(3)],
-        "four to six transforms": [some(4), some(5), some(6)],
+        "three transforms": [(first, second, third), (second, third, first), (third, third, third)],
+        "four to six transforms": [some(4), (first, second, still, third, second), some(6), (first,) * 4],
         "frames far away and close by": [
             (transform(tilt(rng), vector(rng, 50.0)), transform(half_turn(rng), vector(rng, 0.01))),
             (transform(wide_turn(rng), vector(rng, 0.01)), transform(tilt(rng), vector(rng, 50.0)), *some(1)),
@@ -52,13 +63,30 @@ def chain_cases(rng):
     return [Case(family, args) for family, lists in families.items() for args in lists]
 
 
-def _rotations_and_translations_apart(*transforms):
-    return transform(chain(*(T[:3, :3] for T in transforms)), sum(T[:3, 3] for T in transforms))
+def _earlier(T, others):
+    return any(np.array_equal(T, other) for other in others)
+
+
+def _with_rotation(of):
+    """`chain` of someone whose rotation is `of(the rotations)`, and who adds the translations."""
+    return lambda *transforms: transform(of([T[:3, :3] for T in transforms]), sum(T[:3, 3] for T in transforms))
 
 
 SOME_LEFT_OUT = (
     "Some of the transforms did not get into the product.",
     "Try your function on one, on two, and on five transforms, and count how many it multiplies.",
+)
+REVERSED = (
+    "The transforms were multiplied in the reverse order.",
+    "Write the frames' names under the product: next to each other, the same frame has to stand twice.",
+)
+EACH_BY_ITSELF = (
+    "The translations were added, each as it is.",
+    "Each translation counts along the axes of its own frame: the transforms before have turned these.",
+)
+ONE_INVERTED = (
+    "A transform was inverted on the way.",
+    "Write the frames' names under the product: a chain whose inner names fit needs no inverse.",
 )
 
 CHAIN = Exercise(
@@ -70,21 +98,49 @@ CHAIN = Exercise(
     credit={"rotation": 0.4, "translation": 0.4},
     weights={"three transforms": 2},
     misconceptions=(
-        Misconception(
-            "order-reversed",
-            lambda *transforms: chain(*reversed(transforms)),
-            "The transforms were multiplied in the reverse order.",
-            "Write the frames' names under the product: next to each other, the same frame has to stand twice.",
+        *(
+            Misconception("order-reversed", wrong, *REVERSED)
+            for wrong in (
+                lambda *transforms: chain(*reversed(transforms)),
+                lambda *transforms: chain(*(transforms if len(transforms) < 3 else reversed(transforms))),
+                lambda *transforms: chain(*transforms[2:], *transforms[:2]),
+            )
         ),
-        Misconception("elementwise-product", lambda *transforms: reduce(np.multiply, transforms), *ENTRY_BY_ENTRY),
+        *(
+            Misconception("elementwise-product", wrong, *ENTRY_BY_ENTRY)
+            for wrong in (
+                lambda *transforms: reduce(np.multiply, transforms),
+                lambda *transforms: reduce(np.multiply, transforms, np.eye(4)),
+            )
+        ),
+        Misconception("offset-not-rotated", _with_rotation(lambda rotations: chain(*rotations)), *EACH_BY_ITSELF),
         Misconception(
-            "elementwise-product", lambda *transforms: reduce(np.multiply, transforms, np.eye(4)), *ENTRY_BY_ENTRY
+            "offset-not-rotated;order-reversed",
+            _with_rotation(lambda rotations: chain(*reversed(rotations))),
+            *together(EACH_BY_ITSELF, REVERSED),
         ),
         Misconception(
-            "offset-not-rotated",
-            _rotations_and_translations_apart,
-            "The rotations were multiplied and the translations added, each by themselves.",
-            "Each translation counts along the axes of its own frame: the transforms before have turned these.",
+            "orientation-not-transformed",
+            lambda *transforms: transform(transforms[-1][:3, :3], chain(*transforms)[:3, 3]),
+            "The rotation is that of the last transform alone.",
+            "Every link turns all that come after it.",
+        ),
+        Misconception(
+            "orientation-identity",
+            lambda *transforms: transform(np.eye(3), chain(*transforms)[:3, 3]),
+            "The rotation is the identity.",
+            "Every link turns all that come after it.",
+        ),
+        Misconception(
+            "translation-dropped",
+            lambda *transforms: transform(chain(*transforms)[:3, :3], (0, 0, 0)),
+            "The translation is missing.",
+            "Multiply the whole 4x4 matrices: rotations alone do not say where the last frame is.",
+        ),
+        Misconception(
+            "bottom-row-wrong",
+            lambda *transforms: np.vstack((chain(*transforms)[:3], np.zeros(4))),
+            *BOTTOM_ROW,
         ),
         *(
             Misconception("transforms-left-out", wrong, *SOME_LEFT_OUT)
@@ -97,6 +153,9 @@ CHAIN = Exercise(
                 lambda *transforms: chain(np.eye(4), *transforms[:-1]),
                 lambda *transforms: transforms[0],
                 lambda *transforms: transforms[-1],
+                lambda *transforms: chain(*transforms[:3]),
+                lambda *transforms: chain(*transforms[:4]),
+                lambda *transforms: chain(*(T for i, T in enumerate(transforms) if not _earlier(T, transforms[:i]))),
             )
         ),
         Misconception(
@@ -105,11 +164,17 @@ CHAIN = Exercise(
             "Your function takes exactly two transforms.",
             "A chain can have any number of links: what does the star in the function's first line do?",
         ),
-        Misconception(
-            "first-applied-twice",
-            lambda *transforms: chain(transforms[0], *transforms),
-            "The first transform is in the product twice.",
-            "What does your product start with, and which transform does your loop multiply first?",
+        *(
+            Misconception(
+                "applied-twice",
+                wrong,
+                "One transform is in the product twice.",
+                "What does your product start with, and which transform does your loop multiply first?",
+            )
+            for wrong in (
+                lambda *transforms: chain(transforms[0], *transforms),
+                lambda *transforms: chain(*transforms, transforms[-1]),
+            )
         ),
         Misconception(
             "added-not-multiplied",
@@ -117,11 +182,15 @@ CHAIN = Exercise(
             "The matrices were added.",
             "Which operation takes a point through one transform and then through the next?",
         ),
-        Misconception(
-            "wrong-direction",
-            lambda *transforms: np.linalg.inv(chain(*transforms)),
-            "Your answer is the inverse: it describes the first frame in terms of the last.",
-            "Read the names again: which frame is described, and which one is it described in?",
+        Misconception("wrong-direction", lambda *transforms: np.linalg.inv(chain(*transforms)), *INVERSE_RETURNED),
+        *(
+            Misconception("wrong-transform-inverted", wrong, *ONE_INVERTED)
+            for wrong in (
+                lambda *transforms: chain(transforms[0], *map(np.linalg.inv, transforms[1:])),
+                lambda *transforms: chain(np.linalg.inv(transforms[0]), *transforms[1:]),
+                lambda *transforms: chain(*transforms[:-1], np.linalg.inv(transforms[-1])),
+                lambda *transforms: chain(*map(np.linalg.inv, transforms)),
+            )
         ),
     ),
 )
@@ -138,11 +207,18 @@ def transform_pose_cases(rng):
     along_axes = signed_permutations()
     shuffled = [along_axes[index] for index in rng.permutation(24)]
     first, second = rotation(rng), rotation(rng)
+    T, p = generic_transform(rng), generic_pose(rng)
     families = {
         "frames turned by quarter turns": [
             (transform(R, vector(rng)), pose(S, vector(rng))) for R, S in zip(shuffled[:12], shuffled[12:])
         ],
-        "tilted frames": [(generic_transform(rng), generic_pose(rng)) for _ in range(4)],
+        "tilted frames": [(T, p), (T, generic_pose(rng)), (generic_transform(rng), p)],
+        "a pose in B's origin, or parallel to B; a frame B in A's origin, or parallel to A": [
+            (generic_transform(rng), pose(rotation(rng), np.zeros(3))),
+            (generic_transform(rng), pose(np.eye(3), vector(rng))),
+            (transform(rotation(rng), np.zeros(3)), generic_pose(rng)),
+            (transform(np.eye(3), vector(rng)), generic_pose(rng)),
+        ],
         "frames turned by more than 120 degrees": [
             (transform(R, vector(rng)), pose(S, vector(rng)))
             for R, S in ((wide_turn(rng), wide_turn(rng)), (half_turn(rng), tilt(rng)), (tilt(rng), half_turn(rng)))
@@ -175,17 +251,41 @@ def _with_orientation(of):
     return lambda a_T_b, pose_in_b: pose_of(position(transform_pose(a_T_b, pose_in_b)), of(a_T_b, pose_in_b))
 
 
-def _as_pose(T):
-    return pose(T[:3, :3], T[:3, 3])
+def _as_pose(T, order=slice(None)):
+    """The Pose of a transform, the quaternion's numbers in some order."""
+    return pose_of(T[:3, 3], quaternion(T[:3, :3])[order])
 
 
 def _read_in_another_order(a_T_b, pose_in_b, order):
     return orientation(transform_pose(a_T_b, pose_of(position(pose_in_b), orientation(pose_in_b)[order])))
 
 
+def _added(first, second):
+    return (first + second) / np.linalg.norm(first + second)
+
+
+def _angles_added(a_T_b, pose_in_b):
+    angles = [_angles(a_T_b), _angles(matrix(pose_in_b))]
+    return Rotation.from_euler("xyz", np.sum(angles, axis=0)).as_quat()
+
+
+def _angles(T):
+    return Rotation.from_matrix(T[:3, :3]).as_euler("xyz", suppress_warnings=True)
+
+
+def _breaks_for_large_turns(a_T_b, pose_in_b):
+    right = transform_pose(a_T_b, pose_in_b)
+    return Anything("orientation") if np.trace(matrix(right)[:3, :3]) <= 1e-9 else right
+
+
 THE_WRONG_WAY_ROUND = (
     "The two transforms were multiplied in the wrong order.",
     "Write the frames' names under the product: next to each other, the same frame has to stand twice.",
+)
+
+FROM_A_TO_B = (
+    "You took the pose from A to B; asked for is from B to A.",
+    "Which frame is the given pose in, and which frame does a_T_b lead to?",
 )
 
 TRANSFORM_POSE = Exercise(
@@ -247,8 +347,7 @@ TRANSFORM_POSE = Exercise(
         Misconception(
             "wrong-direction",
             lambda a_T_b, pose_in_b: _as_pose(np.linalg.inv(a_T_b) @ matrix(pose_in_b)),
-            "You took the pose from A to B; asked for is from B to A.",
-            "Which frame is the given pose in, and which frame does a_T_b lead to?",
+            *FROM_A_TO_B,
         ),
         Misconception(
             "wrong-direction",
@@ -281,7 +380,7 @@ TRANSFORM_POSE = Exercise(
                 _with_orientation(lambda T, p, order=order: orientation(transform_pose(T, p))[order]),
                 *QUATERNION_ORDER,
             )
-            for order in ([3, 0, 1, 2], [3, 2, 1, 0])
+            for order in ORDERS
         ),
         *(
             Misconception(
@@ -289,7 +388,53 @@ TRANSFORM_POSE = Exercise(
                 _with_orientation(lambda T, p, order=order: _read_in_another_order(T, p, order)),
                 *QUATERNION_ORDER,
             )
-            for order in ([3, 0, 1, 2], [1, 2, 3, 0], [3, 2, 1, 0])
+            for order in ORDERS
+        ),
+        *(
+            Misconception(
+                "order-reversed;quaternion-order",
+                lambda a_T_b, pose_in_b, order=order: _as_pose(matrix(pose_in_b) @ a_T_b, order),
+                *together(THE_WRONG_WAY_ROUND, QUATERNION_ORDER),
+            )
+            for order in ORDERS
+        ),
+        *(
+            Misconception(
+                "wrong-direction;quaternion-order",
+                lambda a_T_b, pose_in_b, order=order: _as_pose(np.linalg.inv(a_T_b) @ matrix(pose_in_b), order),
+                *together(FROM_A_TO_B, QUATERNION_ORDER),
+            )
+            for order in ORDERS
+        ),
+        Misconception(
+            "wrong-direction;order-reversed",
+            lambda a_T_b, pose_in_b: _as_pose(matrix(pose_in_b) @ np.linalg.inv(a_T_b)),
+            *together(FROM_A_TO_B, THE_WRONG_WAY_ROUND),
+        ),
+        Misconception("trace-formula-only", _breaks_for_large_turns, *BREAKS_AT_HALF_TURN),
+        Misconception(
+            "quaternions-added",
+            _with_orientation(lambda T, p: _added(quaternion(T[:3, :3]), orientation(p))),
+            "The two quaternions were added.",
+            "One rotation after another is a product, of quaternions as of matrices.",
+        ),
+        Misconception(
+            "quaternions-added",
+            _with_orientation(_angles_added),
+            "Roll, pitch and yaw of the two rotations were added.",
+            "Angles add up when both turns have one axis. One rotation after another is a product.",
+        ),
+        Misconception(
+            "rotation-applied-twice",
+            _with_position(lambda T, p_in_b: T[:3, :3] @ T[:3, :3] @ p_in_b + T[:3, 3]),
+            "The position was turned twice.",
+            "The transform turns the position already.",
+        ),
+        Misconception(
+            "rotation-transposed",
+            _with_position(lambda T, p_in_b: T[:3, :3].T @ p_in_b + T[:3, 3]),
+            "The position was turned the opposite way.",
+            "The columns of B's rotation are its axes in A; the rows are not.",
         ),
     ),
 )

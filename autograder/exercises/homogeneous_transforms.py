@@ -24,16 +24,18 @@ from .cases import (
     vector,
     wide_turn,
 )
-from .specification import Case, Exercise, Misconception
+from .rotation import TRUNCATED
+from .specification import Anything, Case, Exercise, Misconception, together
 
 EXAMPLE_1 = transform(rotation_about((0, 0, 1), math.pi / 4), (0, 0, 0.5))  # the lab's: turned by 45 degrees and raised
 
 
 def many_frames(rng):
     """{family: [(R, p), …]}: rotations of every kind, each with a translation that is not along its axis."""
+    R, p = rotation(rng), vector(rng)  # each with two others: a function may not remember one by the other
     return {
         "a frame turned by quarter turns": [(R, vector(rng)) for R in signed_permutations()],
-        "a tilted frame": [(tilt(rng), vector(rng)), (rotation(rng), vector(rng)), (rotation(rng), vector(rng))],
+        "a tilted frame": [(R, p), (tilt(rng), p), (R, vector(rng)), (rotation(rng), np.zeros(3))],
         "a frame turned by more than 120 degrees": [(wide_turn(rng), vector(rng)) for _ in range(3)],
         "a half turn about a slanted axis": [(half_turn(rng), vector(rng)) for _ in range(3)],
         "almost a half turn": [(near_half_turn(rng, short), vector(rng)) for short in (1e-2, 3e-3, 1e-3)],
@@ -56,9 +58,10 @@ def make_transform(R, p):
 
 
 def make_transform_cases(rng):
+    R, p = rotation(rng), vector(rng)
     families = {
         "a frame turned by quarter turns": [(R, vector(rng)) for R in signed_permutations()],
-        "a tilted frame": [(rotation(rng), vector(rng)), (tilt(rng), vector(rng)), (wide_turn(rng), vector(rng))],
+        "a tilted frame": [(R, p), (tilt(rng), p), (R, vector(rng)), (wide_turn(rng), np.zeros(3))],
         "a frame turned by a fraction of a degree": [
             (rotation_about(slanted_axis(rng), angle), vector(rng)) for angle in (1e-2, 1e-3)
         ],
@@ -75,6 +78,10 @@ def _with_bottom_row(T, row):
     return T
 
 
+ENTRY_BY_ENTRY = (
+    "Your product multiplies entry by entry.",
+    "`*` is not the matrix product in NumPy. Which operator is?",
+)
 BOTTOM_ROW = (
     "The bottom row of your matrix is not that of a homogeneous transform.",
     "The lab says which four numbers it always holds.",
@@ -128,6 +135,12 @@ MAKE_TRANSFORM = Exercise(
             for row in ((0, 0, 0, 0), (1, 1, 1, 1), (1, 0, 0, 0))
         ),
         Misconception("order-reversed", lambda R, p: make_transform(R, R @ p), *TRANSLATION_TURNED),
+        Misconception(
+            "order-reversed;rotation-transposed",
+            lambda R, p: make_transform(R.T, R.T @ p),
+            *together(TRANSLATION_TURNED, ROWS_FOR_COLUMNS),
+        ),
+        Misconception("integer-truncation", lambda R, p: np.trunc(make_transform(R, p)), *TRUNCATED),
         Misconception("wrong-direction", lambda R, p: np.linalg.inv(make_transform(R, p)), *INVERSE_RETURNED),
         Misconception("wrong-sign", lambda R, p: make_transform(R, -p), *TRANSLATION_NEGATED),
         Misconception(
@@ -319,8 +332,30 @@ def _angle_not_halved(matrix):
     return np.append(axis * np.sin(angle), np.cos(angle))
 
 
+def _breaks_for_large_turns(matrix):
+    """Any formula that is right while the trace is positive, as it is for turns below 120 degrees."""
+    return Anything("orientation") if np.trace(matrix[:3, :3]) <= 1e-9 else transform_to_pose(matrix)
+
+
+def _breaks_at_gimbal_lock(matrix):
+    """Any way by roll, pitch and yaw that is right while the pitch is not a quarter turn."""
+    return Anything("orientation") if abs(matrix[2, 0]) > 1.0 - 1e-9 else transform_to_pose(matrix)
+
+
+def _read_as(order, matrix):
+    """The quaternion's four numbers in another order."""
+    return quaternion(matrix[:3, :3])[order]
+
+
+ORDERS = ([3, 0, 1, 2], [1, 2, 3, 0], [3, 2, 1, 0])
+
+
 def _roll_pitch_yaw(matrix):
     return Rotation.from_matrix(matrix[:3, :3]).as_euler("xyz", suppress_warnings=True)
+
+
+def _from_euler(angles, axes="xyz"):
+    return Rotation.from_euler(axes, angles).as_quat()
 
 
 def _yaw_alone(matrix):
@@ -360,6 +395,10 @@ YAW_ALONE = (
     "Your orientation turns about z only; roll and pitch are lost.",
     "Frames can be tilted. Use the whole rotation, not an angle of it.",
 )
+WHOLE_ANGLE = (
+    "The quaternion turns by twice the angle.",
+    "A quaternion is made of sine and cosine of an angle: is it the whole angle of the rotation?",
+)
 WRONG_POSITION = (
     "The position is not B's origin in A.",
     "Check each component by itself: which row and which column of the matrix should it come from?",
@@ -380,12 +419,73 @@ TRANSFORM_TO_POSE = Exercise(
                 _to_pose_with(orientation=lambda matrix, order=order: quaternion(matrix[:3, :3])[order]),
                 *QUATERNION_ORDER,
             )
-            for order in ([3, 0, 1, 2], [1, 2, 3, 0], [3, 2, 1, 0])
+            for order in ORDERS
         ),
         Misconception(
             "rotation-transposed",
             _to_pose_with(orientation=lambda matrix: quaternion(matrix[:3, :3].T)),
             *QUATERNION_TURNED,
+        ),
+        *(
+            Misconception(
+                "quaternion-order;rotation-transposed",
+                _to_pose_with(orientation=lambda matrix, order=order: _read_as(order, matrix.T)),
+                *together(QUATERNION_ORDER, QUATERNION_TURNED),
+            )
+            for order in ORDERS
+        ),
+        *(
+            Misconception(
+                "quaternion-order;wrong-direction",
+                _to_pose_with(
+                    position=lambda matrix: np.linalg.inv(matrix)[:3, 3],
+                    orientation=lambda matrix, order=order: _read_as(order, matrix.T),
+                ),
+                *together(QUATERNION_ORDER, INVERSE_RETURNED),
+            )
+            for order in ORDERS
+        ),
+        Misconception("trace-formula-only", _breaks_for_large_turns, *BREAKS_AT_HALF_TURN),
+        Misconception(
+            "gimbal-lock",
+            _breaks_at_gimbal_lock,
+            "The orientation goes wrong where B's x axis points straight up or down.",
+            "Roll and yaw cannot be told apart there, whatever the formula: a quaternion does not need them.",
+        ),
+        *(
+            Misconception(
+                "trace-formula-only;rotation-transposed",
+                _to_pose_with(orientation=lambda matrix, formula=formula: formula(matrix.T)),
+                *together(BREAKS_AT_HALF_TURN, QUATERNION_TURNED),
+            )
+            for formula in (_trace_formula, _trace_formula_in_plain_python)
+        ),
+        Misconception(
+            "wrong-sign",
+            _to_pose_with(orientation=_lengths_with_signs(lambda sizes, differences: sizes)),
+            "The quaternion's x, y and z are never negative.",
+            "A square root gives the size of a number; where do the signs come from?",
+        ),
+        *(
+            Misconception(
+                "wrong-units",
+                _to_pose_with(position=lambda matrix, factor=factor: factor * matrix[:3, 3]),
+                "The position is in other units than metres.",
+                "Lengths in a transform and in a Pose are metres: nothing needs to be converted.",
+            )
+            for factor in (100, 1000, 0.01, 0.001)
+        ),
+        Misconception(
+            "degrees-as-radians",
+            _to_pose_with(orientation=lambda matrix: _from_euler(np.degrees(_roll_pitch_yaw(matrix)))),
+            "Angles in degrees were taken for radians on the way to the quaternion.",
+            "Functions of angles expect radians; a function that goes from matrix to quaternion needs no angles.",
+        ),
+        Misconception(
+            "euler-order",
+            _to_pose_with(orientation=lambda matrix: _from_euler(_roll_pitch_yaw(matrix), "XYZ")),
+            "Roll, pitch and yaw were put together in another order than they were taken apart.",
+            "About fixed axes and about moving ones are two orders; a function from matrix to quaternion needs neither.",
         ),
         *(
             Misconception("trace-formula-only", _to_pose_with(orientation=orientation), *BREAKS_AT_HALF_TURN)
@@ -411,6 +511,10 @@ TRANSFORM_TO_POSE = Exercise(
                 lambda matrix: (0, 0, matrix[2, 3]),  # z alone
                 lambda matrix: matrix[[0, 1, 0], 3],  # x, y, x
                 lambda matrix: matrix[[2, 1, 0], 3],  # back to front
+                lambda matrix: matrix[[0, 2, 1], 3],  # y and z swapped
+                lambda matrix: matrix[[1, 0, 2], 3],  # x and y swapped
+                lambda matrix: np.diag(matrix)[:3],
+                lambda matrix: np.linalg.inv(matrix)[:3, 3],
                 lambda matrix: matrix[:3, 2],  # the column beside it
                 lambda matrix: matrix[:3, :3] @ matrix[:3, 3],
             )
@@ -424,12 +528,19 @@ TRANSFORM_TO_POSE = Exercise(
             )
             for w in (0.0, 1.0)
         ),
-        Misconception("yaw-only", _to_pose_with(orientation=_yaw_alone), *YAW_ALONE),
+        *(
+            Misconception("yaw-only", _to_pose_with(orientation=orientation), *YAW_ALONE)
+            for orientation in (_yaw_alone, lambda matrix: _from_euler([0.0, 0.0, _roll_pitch_yaw(matrix)[2]]))
+        ),
+        Misconception(
+            "yaw-only;angle-not-halved",
+            _to_pose_with(orientation=lambda matrix: (0, 0, matrix[1, 0], matrix[0, 0])),
+            *together(YAW_ALONE, WHOLE_ANGLE),
+        ),
         Misconception(
             "angle-not-halved",
             _to_pose_with(orientation=_angle_not_halved),
-            "The quaternion turns by twice the angle.",
-            "A quaternion is made of sine and cosine of an angle: is it the whole angle of the rotation?",
+            *WHOLE_ANGLE,
         ),
     ),
 )
@@ -454,6 +565,11 @@ def _from_pose_with(rotation):
     return lambda pose: make_transform(rotation(orientation(pose)), position(pose))
 
 
+def _turned(pose):
+    """The rotation alone, as a 4x4 matrix."""
+    return make_transform(pose_to_transform(pose)[:3, :3], (0, 0, 0))
+
+
 def _planar(q):
     return Rotation.from_euler("z", 2.0 * math.atan2(q[2], q[3])).as_matrix()
 
@@ -473,7 +589,7 @@ POSE_TO_TRANSFORM = Exercise(
                 _from_pose_with(lambda q, order=order: Rotation.from_quat(q[order]).as_matrix()),
                 *QUATERNION_ORDER,
             )
-            for order in ([3, 0, 1, 2], [1, 2, 3, 0], [3, 2, 1, 0])
+            for order in ORDERS
         ),
         Misconception(
             "rotation-transposed",
@@ -501,8 +617,20 @@ POSE_TO_TRANSFORM = Exercise(
         ),
         Misconception(
             "order-reversed",
-            lambda pose: pose_to_transform(pose) @ np.linalg.inv(_from_pose_with(lambda q: np.eye(3))(pose)),
+            lambda pose: _turned(pose) @ _from_pose_with(lambda q: np.eye(3))(pose),
             *TRANSLATION_TURNED,
+        ),
+        Misconception("integer-truncation", lambda pose: np.trunc(pose_to_transform(pose)), *TRUNCATED),
+        Misconception(
+            "elementwise-product",
+            lambda pose: _turned(pose) * _from_pose_with(lambda q: np.eye(3))(pose),
+            *ENTRY_BY_ENTRY,
+        ),
+        Misconception(
+            "added-not-multiplied",
+            lambda pose: _turned(pose) + _from_pose_with(lambda q: np.eye(3))(pose),
+            "The matrices of rotation and translation were added.",
+            "Which product of two matrices does first the one and then the other?",
         ),
         Misconception("wrong-direction", lambda pose: np.linalg.inv(pose_to_transform(pose)), *INVERSE_RETURNED),
         Misconception(
@@ -517,6 +645,36 @@ POSE_TO_TRANSFORM = Exercise(
             "A quaternion's components are not angles; look for a function that makes a matrix from a quaternion.",
         ),
         Misconception("yaw-only", _from_pose_with(_planar), *YAW_ALONE),
+        Misconception(
+            "yaw-only;angle-not-halved",
+            _from_pose_with(lambda q: np.array([[q[3], -q[2], 0], [q[2], q[3], 0], [0, 0, 1]])),
+            *together(YAW_ALONE, WHOLE_ANGLE),
+        ),
+        *(
+            Misconception(
+                "quaternion-order;rotation-transposed",
+                _from_pose_with(lambda q, order=order: Rotation.from_quat(q[order]).as_matrix().T),
+                *together(QUATERNION_ORDER, QUATERNION_TURNED),
+            )
+            for order in ORDERS
+        ),
+        *(
+            Misconception(
+                "order-reversed;quaternion-order",
+                lambda pose, order=order: _turned(pose_of((0, 0, 0), orientation(pose)[order]))
+                @ _from_pose_with(lambda q: np.eye(3))(pose),
+                *together(TRANSLATION_TURNED, QUATERNION_ORDER),
+            )
+            for order in ORDERS
+        ),
+        *(
+            Misconception(
+                "wrong-position",
+                lambda pose, order=order: make_transform(pose_to_transform(pose)[:3, :3], position(pose)[order]),
+                *WRONG_POSITION,
+            )
+            for order in ([0, 1, 0], [2, 1, 0], [0, 2, 1], [1, 0, 2])
+        ),
         Misconception(
             "sign-ignored",
             _from_pose_with(lambda q: Rotation.from_quat([*q[:3], abs(q[3])]).as_matrix()),
@@ -535,10 +693,12 @@ def transform_point(a_T_b, p_in_b):
 
 def transform_point_cases(rng):
     x_axis, y_axis, z_axis = np.eye(3)
+    T, p = transform(wide_turn(rng), vector(rng)), vector(rng)
     families = {
         "a frame turned by quarter turns": [(transform(R, vector(rng)), vector(rng)) for R in signed_permutations()],
         "a tilted frame": [
-            (transform(R, vector(rng)), vector(rng)) for R in (tilt(rng), wide_turn(rng), half_turn(rng))
+            (T, p), (transform(tilt(rng), vector(rng)), p), (T, vector(rng)),
+            (transform(half_turn(rng), np.zeros(3)), vector(rng)),
         ],
         "Example 1, and the tips of B's other axes": [
             (EXAMPLE_1, x_axis),
@@ -554,16 +714,33 @@ def transform_point_cases(rng):
     return [Case(family, pair) for family, pairs in families.items() for pair in pairs]
 
 
+def _turned_in_the_plane(a_T_b, p_in_b):
+    in_plane = a_T_b[:2, :2] @ p_in_b[:2]
+    return np.append(in_plane, p_in_b[2]) + a_T_b[:3, 3]
+
+
 def _homogeneous(p):
     return np.append(p, 1.0)
 
 
-ENTRY_BY_ENTRY = (
-    "Your product multiplies entry by entry.",
-    "`*` is not the matrix product in NumPy. Which operator is?",
+FROM_A_TO_B = (
+    "You took the point from A to B; asked for is from B to A.",
+    "Which frame are the given coordinates in, and which frame does a_T_b lead to?",
+)
+POINT_TURNED_BACK = (
+    "The point was turned the opposite way: the rotation is transposed.",
+    "Check it with the tip of B's x axis: where is it in A, according to the first column?",
+)
+MOVED_BACK = (
+    "The point was moved the opposite way.",
+    "Where does B's own origin, the point 0, 0, 0, have to come out?",
+)
+AXES_TAKEN_AS_PARALLEL = (
+    "The translation was added to the point's coordinates in B, as if B's axes were parallel to A's.",
+    "The coordinates count along B's axes: how do these lie in A?",
 )
 IN_THE_WRONG_ORDER = (
-    "Rotation and translation were applied in the wrong order, or from the wrong side.",
+    "Rotation and translation were applied in the wrong order, or the matrix from the wrong side.",
     "A matrix stands to the left of the point it transforms; and which of the two acts on the point first?",
 )
 
@@ -578,9 +755,19 @@ TRANSFORM_POINT = Exercise(
         Misconception(
             "rotation-transposed",
             lambda a_T_b, p_in_b: a_T_b[:3, :3].T @ p_in_b + a_T_b[:3, 3],
-            "The point was turned the opposite way: the rotation is transposed.",
-            "Check it with the tip of B's x axis: where is it in A, according to the first column?",
+            *POINT_TURNED_BACK,
         ),
+        Misconception(
+            "rotation-transposed;wrong-sign",
+            lambda a_T_b, p_in_b: a_T_b[:3, :3].T @ p_in_b - a_T_b[:3, 3],
+            *together(POINT_TURNED_BACK, MOVED_BACK),
+        ),
+        Misconception(
+            "offset-not-rotated;wrong-sign",
+            lambda a_T_b, p_in_b: p_in_b - a_T_b[:3, 3],
+            *together(AXES_TAKEN_AS_PARALLEL, MOVED_BACK),
+        ),
+        Misconception("yaw-only", _turned_in_the_plane, *YAW_ALONE),
         Misconception(
             "translation-dropped",
             lambda a_T_b, p_in_b: a_T_b[:3, :3] @ p_in_b,
@@ -590,14 +777,12 @@ TRANSFORM_POINT = Exercise(
         Misconception(
             "offset-not-rotated",
             lambda a_T_b, p_in_b: p_in_b + a_T_b[:3, 3],
-            "The translation was added to the point's coordinates in B, as if B's axes were parallel to A's.",
-            "The coordinates count along B's axes: how do these lie in A?",
+            *AXES_TAKEN_AS_PARALLEL,
         ),
         Misconception(
             "wrong-direction",
             lambda a_T_b, p_in_b: transform_point(np.linalg.inv(a_T_b), p_in_b),
-            "You took the point from A to B; asked for is from B to A.",
-            "Which frame are the given coordinates in, and which frame does a_T_b lead to?",
+            *FROM_A_TO_B,
         ),
         Misconception(
             "homogeneous-returned",
@@ -612,6 +797,8 @@ TRANSFORM_POINT = Exercise(
                 lambda a_T_b, p_in_b: (a_T_b * _homogeneous(p_in_b))[:3],
                 lambda a_T_b, p_in_b: a_T_b[:3, :3] * p_in_b + a_T_b[:3, 3],
                 lambda a_T_b, p_in_b: np.diag(a_T_b)[:3] * p_in_b + a_T_b[:3, 3],
+                lambda a_T_b, p_in_b: np.diag(a_T_b)[:3] * p_in_b,
+                lambda a_T_b, p_in_b: np.sum(a_T_b[:3, :3] * p_in_b, axis=0) + a_T_b[:3, 3],
             )
         ),
         *(
@@ -624,8 +811,7 @@ TRANSFORM_POINT = Exercise(
         Misconception(
             "wrong-sign",
             lambda a_T_b, p_in_b: a_T_b[:3, :3] @ p_in_b - a_T_b[:3, 3],
-            "The point was turned as it should, and then moved the opposite way.",
-            "Where does B's own origin, the point 0, 0, 0, have to come out?",
+            *MOVED_BACK,
         ),
         Misconception(
             "rest-ignored",

@@ -1,6 +1,7 @@
 """The exercises of notebook 4: the inverse of a transform, and what it is good for."""
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from .cases import (
     generic_transform,
@@ -14,8 +15,9 @@ from .cases import (
     vector,
     wide_turn,
 )
-from .homogeneous_transforms import ENTRY_BY_ENTRY
-from .specification import Case, Exercise, Misconception
+from .homogeneous_transforms import BOTTOM_ROW, BREAKS_AT_HALF_TURN, ENTRY_BY_ENTRY, YAW_ALONE
+from .rotation import TRUNCATED
+from .specification import Anything, Case, Exercise, Misconception, together
 
 
 def _parts(T):
@@ -39,6 +41,10 @@ PARTS_SEPARATELY = (
     "Rotation and translation were inverted each by itself.",
     "The translation of the inverse is A's origin as seen from B, along B's axes, and these are turned.",
 )
+ONE_BELOW = (
+    "The translation stands in the bottom row.",
+    "The bottom row of a transform is 0, 0, 0, 1; so is that of its inverse.",
+)
 ROTATION_NOT_INVERTED = (
     "The inverse still turns the same way as the transform itself.",
     "If B is turned to the left in A, how is A turned in B?",
@@ -52,16 +58,43 @@ def invert_transform(a_T_b):
 
 
 def invert_transform_cases(rng):
+    R, p = rotation(rng), vector(rng)  # each with another: a function may not remember one by the other
     families = {
         "a frame turned by quarter turns": [transform(R, vector(rng)) for R in signed_permutations()],
-        "a tilted frame": [generic_transform(rng), generic_transform(rng), transform(half_turn(rng), vector(rng))],
+        "a tilted frame": [
+            transform(R, p), transform(rotation(rng), p), transform(R, vector(rng)), transform(half_turn(rng), vector(rng)),
+        ],
+        "a frame in A's origin, or parallel to A": [
+            transform(rotation(rng), np.zeros(3)), transform(np.eye(3), vector(rng)),
+        ],
         "a frame turned by more than 120 degrees": [transform(wide_turn(rng), vector(rng)) for _ in range(2)],
         "a frame turned by a fraction of a degree": [
             transform(rotation_about(slanted_axis(rng), angle), vector(rng)) for angle in (1e-2, 1e-3)
         ],
         "a frame far away": [transform(tilt(rng), vector(rng, length)) for length in (50.0, 20.0)],
-    }
+    }  # fmt: skip
     return [Case(family, (T,)) for family, transforms in families.items() for T in transforms]
+
+
+def _breaks_for_large_turns(a_T_b):
+    """By axis and angle, or another way that is right while the trace is positive, as it is below 120 degrees."""
+    large = np.trace(a_T_b[:3, :3]) <= 1e-9
+    return Anything("rotation", "translation") if large else invert_transform(a_T_b)
+
+
+def _angles_negated(a_T_b):
+    angles = Rotation.from_matrix(a_T_b[:3, :3]).as_euler("xyz", suppress_warnings=True)
+    R = Rotation.from_euler("xyz", -angles).as_matrix()
+    return transform(R, -R @ a_T_b[:3, 3])
+
+
+def _yaw_turned_back(a_T_b):
+    R = Rotation.from_euler("z", -np.arctan2(a_T_b[1, 0], a_T_b[0, 0])).as_matrix()
+    return transform(R, -R @ a_T_b[:3, 3])
+
+
+def _with_bottom(T, row):
+    return np.vstack((T[:3], row))
 
 
 INVERT_TRANSFORM = Exercise(
@@ -76,6 +109,35 @@ INVERT_TRANSFORM = Exercise(
         Misconception("inverse-by-transpose", np.transpose, *INVERSE_BY_TRANSPOSE),
         Misconception("inverse-parts-separately", _parts_separately, *PARTS_SEPARATELY),
         Misconception("rotation-not-inverted", _rotation_kept, *ROTATION_NOT_INVERTED),
+        Misconception("trace-formula-only", _breaks_for_large_turns, *BREAKS_AT_HALF_TURN),
+        Misconception("integer-truncation", lambda a_T_b: np.trunc(invert_transform(a_T_b)), *TRUNCATED),
+        Misconception(
+            "yaw-only",
+            _yaw_turned_back,
+            *YAW_ALONE,
+        ),
+        Misconception(
+            "euler-angles-negated",
+            _angles_negated,
+            "Roll, pitch and yaw were negated, but not undone in the reverse order.",
+            "What was done last has to be undone first. A matrix needs no angles for that.",
+        ),
+        Misconception(
+            "translation-in-bottom-row",
+            lambda a_T_b: transform(a_T_b[:3, :3], invert_transform(a_T_b)[:3, 3]).T,
+            *ONE_BELOW,
+        ),
+        Misconception(
+            "inverse-parts-separately;translation-in-bottom-row",
+            lambda a_T_b: transform(a_T_b[:3, :3], -a_T_b[:3, 3]).T,
+            *together(PARTS_SEPARATELY, ONE_BELOW),
+        ),
+        *(
+            Misconception(
+                "bottom-row-wrong", lambda a_T_b, row=row: _with_bottom(invert_transform(a_T_b), row), *BOTTOM_ROW
+            )
+            for row in ((0, 0, 0, 0), (1, 1, 1, 1))
+        ),
         Misconception(
             "rotation-not-inverted",
             _inverse_with(lambda R, p: R, lambda R, p: -R.T @ p),
@@ -137,10 +199,15 @@ def relative_transform(a_T_b, a_T_c):
 def relative_transform_cases(rng):
     along_axes = [transform(R, vector(rng)) for R in signed_permutations()]
     shuffled = [along_axes[index] for index in rng.permutation(24)]
-    R = rotation(rng)
+    R, p = rotation(rng), vector(rng)
+    B, C, turned = transform(R, p), generic_transform(rng), transform(tilt(rng), p)
     families = {
         "frames turned by quarter turns": list(zip(shuffled[:12], shuffled[12:])),
-        "two tilted frames": [(generic_transform(rng), generic_transform(rng)) for _ in range(4)],
+        "two tilted frames": [(B, C), (B, generic_transform(rng)), (turned, C), (B, turned)],
+        "two frames that are the same, or almost the same, or B the same as A": [
+            (C, C), (C, transform(C[:3, :3] @ rotation_about(slanted_axis(rng), 2e-3), C[:3, 3] + vector(rng, 0.002))),
+            (np.eye(4), B),
+        ],
         "two frames turned by more than 120 degrees": [
             (transform(wide_turn(rng), vector(rng)), transform(wide_turn(rng), vector(rng))),
             (transform(half_turn(rng), vector(rng)), transform(wide_turn(rng), vector(rng))),
@@ -149,7 +216,7 @@ def relative_transform_cases(rng):
             (transform(R, far), transform(R @ tilt(rng), far + vector(rng, 0.1)))
             for far in (vector(rng, 20.0), vector(rng, 50.0))
         ],
-    }
+    }  # fmt: skip
     return [Case(family, pair) for family, pairs in families.items() for pair in pairs]
 
 
@@ -164,6 +231,10 @@ THE_OTHER_INVERTED = (
 PRODUCT_REVERSED = (
     "The right transform was inverted, but the product is in the wrong order.",
     "Write the frames' names under your product: next to each other, the same frame has to stand twice.",
+)
+B_FROM_C = (
+    "Your answer is the inverse: it describes B in terms of C.",
+    "Read the name b_T_c again: which frame is described, and which one is it described in?",
 )
 NOT_INTO_THE_AXES = (
     "The translation is the difference of the two origins, still along A's axes.",
@@ -182,10 +253,58 @@ RELATIVE_TRANSFORM = Exercise(
         Misconception(
             "wrong-direction",
             lambda a_T_b, a_T_c: relative_transform(a_T_c, a_T_b),
-            "Your answer is the inverse: it describes B in terms of C.",
-            "Read the name b_T_c again: which frame is described, and which one is it described in?",
+            *B_FROM_C,
         ),
         Misconception("order-reversed", lambda a_T_b, a_T_c: a_T_c @ np.linalg.inv(a_T_b), *PRODUCT_REVERSED),
+        Misconception(
+            "order-reversed;inverse-by-transpose",
+            lambda a_T_b, a_T_c: a_T_c @ a_T_b.T,
+            *together(PRODUCT_REVERSED, INVERSE_BY_TRANSPOSE),
+        ),
+        Misconception(
+            "wrong-direction;inverse-parts-separately",
+            lambda a_T_b, a_T_c: _parts_separately(a_T_c) @ a_T_b,
+            *together(B_FROM_C, PARTS_SEPARATELY),
+        ),
+        Misconception(
+            "orientation-not-transformed",
+            lambda a_T_b, a_T_c: transform(a_T_c[:3, :3], relative_transform(a_T_b, a_T_c)[:3, 3]),
+            "The rotation is still that of C in A.",
+            "If B is turned in A, C stands otherwise to B than to A.",
+        ),
+        Misconception(
+            "rotation-not-inverted",
+            lambda a_T_b, a_T_c: transform(a_T_b[:3, :3] @ a_T_c[:3, :3], relative_transform(a_T_b, a_T_c)[:3, 3]),
+            "The two rotations were multiplied, neither of them inverted.",
+            "To get from B to C by way of A, one of the two rotations has to be undone.",
+        ),
+        Misconception(
+            "rotation-not-inverted",
+            lambda a_T_b, a_T_c: transform(
+                a_T_b[:3, :3].T @ a_T_c[:3, :3], a_T_b[:3, :3] @ (a_T_c[:3, 3] - a_T_b[:3, 3])
+            ),
+            "The translation was turned by B's rotation, which is not inverted.",
+            "The arrow from B to C is known along A's axes: which rotation leads from these to B's?",
+        ),
+        Misconception(
+            "wrong-sign",
+            lambda a_T_b, a_T_c: transform(
+                a_T_b[:3, :3].T @ a_T_c[:3, :3], a_T_b[:3, :3].T @ (a_T_b[:3, 3] - a_T_c[:3, 3])
+            ),
+            "The translation points from C to B.",
+            "C is described: the arrow goes from B's origin to C's.",
+        ),
+        Misconception(
+            "position-missing",
+            lambda a_T_b, a_T_c: transform(relative_transform(a_T_b, a_T_c)[:3, :3], (0, 0, 0)),
+            "The translation is missing.",
+            "The answer has to say where C's origin is in B.",
+        ),
+        Misconception(
+            "bottom-row-wrong",
+            lambda a_T_b, a_T_c: _with_bottom(relative_transform(a_T_b, a_T_c), np.zeros(4)),
+            *BOTTOM_ROW,
+        ),
         Misconception("inverse-missing", lambda a_T_b, a_T_c: a_T_b @ a_T_c, *BOTH_AS_THEY_ARE),
         Misconception("inverse-missing", lambda a_T_b, a_T_c: a_T_c @ a_T_b, *BOTH_AS_THEY_ARE),
         Misconception(
@@ -203,13 +322,21 @@ RELATIVE_TRANSFORM = Exercise(
             lambda a_T_b, a_T_c: transform(a_T_b[:3, :3].T @ a_T_c[:3, :3], a_T_c[:3, 3] - a_T_b[:3, 3]),
             *NOT_INTO_THE_AXES,
         ),
-        Misconception(
-            "subtracted",
-            lambda a_T_b, a_T_c: a_T_c - a_T_b,
-            "One matrix was subtracted from the other.",
-            "The difference of two transforms is no transform: look at its bottom row. What undoes a product?",
+        *(
+            Misconception(
+                "subtracted",
+                wrong,
+                "One matrix was subtracted from the other.",
+                "The difference of two rotations is no rotation: look at its columns. What undoes a product?",
+            )
+            for wrong in (lambda a_T_b, a_T_c: a_T_c - a_T_b, lambda a_T_b, a_T_c: np.eye(4) + a_T_c - a_T_b)
         ),
         Misconception("elementwise-product", lambda a_T_b, a_T_c: np.linalg.inv(a_T_b) * a_T_c, *ENTRY_BY_ENTRY),
+        Misconception(
+            "wrong-transform-inverted;elementwise-product",
+            lambda a_T_b, a_T_c: a_T_b * np.linalg.inv(a_T_c),
+            *together(THE_OTHER_INVERTED, ENTRY_BY_ENTRY),
+        ),
     ),
 )
 
@@ -224,6 +351,8 @@ def object_in_gripper_cases(rng):
     along_axes = [transform(R, vector(rng)) for R in signed_permutations()]
     shuffled = [along_axes[index] for index in rng.permutation(24)]
     in_front = np.array([1.0, 0.0, 0.0])
+    C, G = transform(tilt(rng), vector(rng)), transform(wide_turn(rng), vector(rng))
+    p = vector(rng)
     families = {
         "an object 1 m in front of the camera": [
             (generic_transform(rng), generic_transform(rng), in_front) for _ in range(3)
@@ -232,15 +361,14 @@ def object_in_gripper_cases(rng):
             (camera, gripper, vector(rng)) for camera, gripper in zip(shuffled[:12], shuffled[12:])
         ],
         "a tilted camera and a tilted gripper": [
-            (transform(tilt(rng), vector(rng)), transform(wide_turn(rng), vector(rng)), vector(rng)),
-            (transform(half_turn(rng), vector(rng)), transform(tilt(rng), vector(rng)), vector(rng)),
-            (generic_transform(rng), generic_transform(rng), vector(rng)),
+            (C, G, p), (transform(half_turn(rng), vector(rng)), G, p), (C, generic_transform(rng), p), (C, G, vector(rng)),
         ],
+        "an object in the camera's origin, or a camera in the gripper's place": [(G, C, np.zeros(3)), (G, G, p)],
         "camera, gripper and object far away": [
             (transform(tilt(rng), vector(rng, 20.0)), transform(tilt(rng), vector(rng, 30.0)), vector(rng, 50.0)),
             (transform(wide_turn(rng), vector(rng, 50.0)), transform(tilt(rng), vector(rng, 50.0)), vector(rng, 0.05)),
         ],
-    }
+    }  # fmt: skip
     return [Case(family, args) for family, lists in families.items() for args in lists]
 
 
@@ -249,6 +377,23 @@ def _apply(T, p):
 
 
 _inv = np.linalg.inv
+
+FOURTH_NUMBER = (
+    "There is a fourth number besides the three coordinates.",
+    "The 1 at the end was needed for the multiplication only.",
+)
+NOT_MOVED = (
+    "The point was turned, but not moved: the translations have dropped out.",
+    "The lab adds a fourth number to the point. Which one lets the translation in?",
+)
+ALONG_THE_BASE = (
+    "Your answer is an arrow between the gripper and the object, still along the axes of the base.",
+    "Seen from the gripper, the same arrow has other components: the gripper's axes are turned.",
+)
+FROM_THE_OBJECT = (
+    "The arrow goes from the object to the gripper.",
+    "Asked for is where the object is, seen from the gripper: which of the two does the arrow start at?",
+)
 
 OBJECT_IN_GRIPPER = Exercise(
     name="object_in_gripper",
@@ -298,14 +443,10 @@ OBJECT_IN_GRIPPER = Exercise(
         Misconception(
             "homogeneous-returned",
             lambda camera, gripper, p: _inv(gripper) @ camera @ np.append(p, 1.0),
-            "The three coordinates are right, but a fourth number is still there.",
-            "The 1 at the end was needed for the multiplication only.",
+            *FOURTH_NUMBER,
         ),
         Misconception(
-            "translation-dropped",
-            lambda camera, gripper, p: (_inv(gripper) @ camera)[:3, :3] @ p,
-            "The point was turned into the gripper's axes, but not moved: the translations have dropped out.",
-            "The lab adds a fourth number to the point. Which one lets the translation in?",
+            "translation-dropped", lambda camera, gripper, p: (_inv(gripper) @ camera)[:3, :3] @ p, *NOT_MOVED
         ),
         Misconception(
             "transform-left-out",
@@ -322,8 +463,75 @@ OBJECT_IN_GRIPPER = Exercise(
         Misconception(
             "offset-not-rotated",
             lambda camera, gripper, p: _apply(camera, p) - gripper[:3, 3],
-            "Your answer is the arrow from the gripper to the object, still along the axes of the base.",
-            "Seen from the gripper, the same arrow has other components: the gripper's axes are turned.",
+            *ALONG_THE_BASE,
+        ),
+        Misconception(
+            "offset-not-rotated;wrong-sign",
+            lambda camera, gripper, p: gripper[:3, 3] - _apply(camera, p),
+            *together(ALONG_THE_BASE, FROM_THE_OBJECT),
+        ),
+        Misconception(
+            "wrong-sign",
+            lambda camera, gripper, p: gripper[:3, :3].T @ (gripper[:3, 3] - _apply(camera, p)),
+            *FROM_THE_OBJECT,
+        ),
+        Misconception(
+            "rotation-not-inverted",
+            lambda camera, gripper, p: gripper[:3, :3] @ (_apply(camera, p) - gripper[:3, 3]),
+            *ROTATION_NOT_INVERTED,
+        ),
+        Misconception(
+            "rotation-not-inverted;wrong-sign",
+            lambda camera, gripper, p: gripper[:3, :3] @ (gripper[:3, 3] - _apply(camera, p)),
+            *together(ROTATION_NOT_INVERTED, FROM_THE_OBJECT),
+        ),
+        Misconception("integer-truncation", lambda c, g, p: object_in_gripper(c, g, np.trunc(p)), *TRUNCATED),
+        Misconception(
+            "optical-frame-assumed",
+            lambda c, g, p: object_in_gripper(c, g, np.array([p[2], -p[0], -p[1]])),
+            "The camera's axes were reordered, as if its z axis pointed forward.",
+            "camera_link is no optical frame: nothing has to be reordered.",
+        ),
+        Misconception(
+            "rest-ignored",
+            lambda c, g, p: object_in_gripper(c, g, np.array([p[0], 0.0, 0.0])),
+            "Only the first of the object's coordinates is used.",
+            "The object need not be straight in front of the camera.",
+        ),
+        *(
+            Misconception(identifier, wrong, *together(*messages))
+            for identifier, wrong, messages in (
+                (
+                    "translation-dropped;inverse-missing",
+                    lambda c, g, p: g[:3, :3] @ c[:3, :3] @ p,
+                    (NOT_MOVED, BOTH_AS_THEY_ARE),
+                ),
+                (
+                    "wrong-transform-inverted;translation-dropped",
+                    lambda c, g, p: g[:3, :3] @ c[:3, :3].T @ p,
+                    (THE_OTHER_INVERTED, NOT_MOVED),
+                ),
+                (
+                    "wrong-transform-inverted;translation-dropped",
+                    lambda c, g, p: c[:3, :3].T @ g[:3, :3] @ p,
+                    (THE_OTHER_INVERTED, NOT_MOVED),
+                ),
+                (
+                    "order-reversed;inverse-by-transpose",
+                    lambda c, g, p: _apply(c @ g.T, p),
+                    (PRODUCT_REVERSED, INVERSE_BY_TRANSPOSE),
+                ),
+                (
+                    "homogeneous-returned;inverse-by-transpose",
+                    lambda c, g, p: g.T @ c @ np.append(p, 1.0),
+                    (FOURTH_NUMBER, INVERSE_BY_TRANSPOSE),
+                ),
+                (
+                    "homogeneous-returned;inverse-parts-separately",
+                    lambda c, g, p: _parts_separately(g) @ c @ np.append(p, 1.0),
+                    (FOURTH_NUMBER, PARTS_SEPARATELY),
+                ),
+            )
         ),
         *(
             Misconception("elementwise-product", wrong, *ENTRY_BY_ENTRY)

@@ -17,12 +17,13 @@ from .cases import (
     rotation,
     rotation_about,
     signed_permutations,
+    slanted_axis,
     tilt,
     vector,
     wide_turn,
 )
-from .homogeneous_transforms import NO_ORIENTATION
-from .specification import Case, Exercise, Misconception
+from .homogeneous_transforms import BREAKS_AT_HALF_TURN, NO_ORIENTATION, ORDERS
+from .specification import Anything, Case, Exercise, Misconception, together
 
 LAB_OBJECT = pose_of((0.6, -0.1, 0.7), (0.0, 0.0, 0.38268343, 0.92387953))  # the lab's, as printed there
 
@@ -42,13 +43,15 @@ def _upright(rng):
 
 
 def _along_axes(rng):
-    """Twelve of the 24, which is plenty here and keeps the public key small."""
+    """Twelve of the 24, which is plenty here and keeps the public key small; one of them a quarter turn about y."""
     along_axes = signed_permutations()
-    return either_sign([pose(along_axes[index], vector(rng)) for index in rng.permutation(24)[:12]])
+    nose_down = next(index for index, R in enumerate(along_axes) if R[2, 0] == -1.0 and np.trace(R) == 1.0)
+    chosen = [nose_down, *(index for index in rng.permutation(24) if index != nose_down)][:12]
+    return either_sign([pose(along_axes[index], vector(rng)) for index in chosen])
 
 
 def _tilted(rng):
-    turns = tilt(rng), wide_turn(rng), rotation(rng), near_half_turn(rng, 1e-3)
+    turns = tilt(rng), wide_turn(rng), rotation(rng), near_half_turn(rng, 1e-3), rotation_about(slanted_axis(rng), 5e-3)
     return either_sign([pose(R, vector(rng)) for R in turns])
 
 
@@ -57,14 +60,17 @@ def _far(rng):
 
 
 def pre_grasp_cases(rng):
+    tilted, others = _tilted(rng), _tilted(rng)
+    odd = rng.uniform(0.111, 0.119)  # no whole number of centimetres
     return [
         *(Case("an object turned by quarter turns", (object_pose,)) for object_pose in _along_axes(rng)),
         *(Case("an upright object, the notebook's among them", (object_pose,)) for object_pose in _upright(rng)),
-        *(Case("a tilted object", args) for args in zip(_tilted(rng), (0.25, 0.1, 0.05, 0.2))),
-        *(Case("another distance", args) for args in zip(_tilted(rng), (0.25, 0.02, 1.0, 0.1))),
+        *(Case("a tilted object", args) for args in zip(tilted, (0.25, 0.1, 0.05, odd, 0.2))),
+        *(Case("another distance", args) for args in zip(tilted, (0.02, 1.0, odd, 0.1))),
+        *(Case("no distance, or a negative one: in front of the object", args) for args in zip(others, (0.0, -0.05))),
         *(
             Case("a distance given by its name", (object_pose,), {"distance": distance})
-            for object_pose, distance in zip(_tilted(rng), (0.25, 0.02, 0.15))
+            for object_pose, distance in zip((*others[2:], tilted[0]), (0.25, 0.02, 0.15, odd))
         ),
         *(Case("an object far away", args) for args in zip(_far(rng), (0.3, 0.02))),
     ]
@@ -72,11 +78,12 @@ def pre_grasp_cases(rng):
 
 def waypoint_cases(rng):
     steps = np.array([[-0.1, 0.0, 0.0], [0.0, 0.05, 0.0], [0.1, 0.0, 0.2], [0.0, -0.2, 0.1]])
+    tilted, offset = _tilted(rng), vector(rng, 0.3)
     return [
         *(Case("an object turned by quarter turns", (frame, vector(rng, 0.5))) for frame in _along_axes(rng)),
         *(Case("an upright object, the notebook's among them", args) for args in zip(_upright(rng), steps)),
-        *(Case("a tilted object", (object_pose, vector(rng, 0.3))) for object_pose in _tilted(rng)),
-        *(Case("a step along one axis of a tilted object", args) for args in zip(_tilted(rng), 0.1 * np.eye(3))),
+        *(Case("a tilted object", (object_pose, offset)) for object_pose in tilted),
+        *(Case("a step along one axis of a tilted object, or none", args) for args in zip(tilted, 0.1 * np.eye(4, 3))),
         *(
             Case("an object far away, and steps of several sizes", (object_pose, vector(rng, length)))
             for object_pose, length in zip(_far(rng), (20.0, 0.01))
@@ -105,6 +112,13 @@ def _yaw(angle):
     return Rotation.from_euler("z", angle).as_matrix()
 
 
+def _yaw_of_matrix(object_pose, offset):
+    R = matrix(object_pose)[:3, :3]
+    if _x_axis_upright(R):
+        return Anything("position")  # there is no yaw; what comes is a matter of rounding
+    return _moved(lambda p, R, offset: p + _yaw(math.atan2(R[1, 0], R[0, 0])) @ offset)(object_pose, offset)
+
+
 def _yaw_of_quaternion(object_pose, offset):
     x, y, z, w = orientation(object_pose)
     return pose_of(position(object_pose) + _yaw(2.0 * math.atan2(z, w)) @ offset, (x, y, z, w))
@@ -129,29 +143,75 @@ def _with_quaternion_written(order):
     return wrong
 
 
+def _angles_reversed(R):
+    angles = Rotation.from_matrix(R).as_euler("xyz", suppress_warnings=True)
+    return Rotation.from_euler("xyz", angles[::-1]).as_matrix()
+
+
+def _breaks(where):
+    """Orientations that go through a matrix, and come back wrong where `where(R)` says."""
+
+    def wrong(object_pose, offset):
+        right = waypoint(object_pose, offset)
+        return Anything("orientation") if where(matrix(object_pose)[:3, :3]) else right
+
+    return wrong
+
+
+def _large_turn(R):
+    return np.trace(R) <= 1e-9
+
+
+def _x_axis_upright(R):
+    return abs(R[2, 0]) > 1.0 - 1e-9
+
+
 def _turned_twice(object_pose):
     R = matrix(object_pose)[:3, :3]
     return quaternion(R @ R)
 
 
+IN_THE_BASE = (
+    "The offset was added along the axes of the base, as if the object were not turned.",
+    "The offset is given in the object's frame: how do the object's axes lie in the base frame?",
+)
+OPPOSITE_SIDE = (
+    "The answer lies on the opposite side of the object.",
+    "The object's frame tells which side is which: in which direction does its x axis point?",
+)
+TURNED_BACK = (
+    "The offset was turned the opposite way.",
+    "The columns of the object's rotation are its axes in the base frame; the rows are not.",
+)
+UPRIGHT_ONLY = (
+    "The offset was turned about z only, as if every object stood upright.",
+    "Objects can be tilted. Use the whole rotation, not an angle of it.",
+)
+READ_IN_ANOTHER_ORDER = (
+    "The numbers of the quaternion were read in another order than ROS's.",
+    "Which comes first in `tf.transformations`, and which last: is w at the front or at the end?",
+)
+
 SHARED = [
+    ("base-frame-offset", _moved(lambda p, R, offset: p + offset), *IN_THE_BASE),
+    ("wrong-sign", _moved(lambda p, R, offset: p - R @ offset), *OPPOSITE_SIDE),
     (
-        "base-frame-offset",
-        _moved(lambda p, R, offset: p + offset),
-        "The offset was added along the axes of the base, as if the object were not turned.",
-        "The offset is given in the object's frame: how do the object's axes lie in the base frame?",
+        "base-frame-offset;wrong-sign",
+        _moved(lambda p, R, offset: p - offset),
+        *together(IN_THE_BASE, OPPOSITE_SIDE),
     ),
+    ("rotation-transposed", _moved(lambda p, R, offset: p + R.T @ offset), *TURNED_BACK),
     (
-        "wrong-sign",
-        _moved(lambda p, R, offset: p - R @ offset),
-        "The answer lies on the opposite side of the object.",
-        "The object's frame tells which side is which: in which direction does its x axis point?",
+        "rotation-transposed;wrong-sign",
+        _moved(lambda p, R, offset: p - R.T @ offset),
+        *together(TURNED_BACK, OPPOSITE_SIDE),
     ),
+    ("trace-formula-only", _breaks(_large_turn), *BREAKS_AT_HALF_TURN),
     (
-        "rotation-transposed",
-        _moved(lambda p, R, offset: p + R.T @ offset),
-        "The offset was turned the opposite way.",
-        "The columns of the object's rotation are its axes in the base frame; the rows are not.",
+        "gimbal-lock",
+        _breaks(_x_axis_upright),
+        "The orientation goes wrong where the object's x axis points straight up or down.",
+        "Roll and yaw cannot be told apart there, whatever the formula. Copy the object's quaternion instead.",
     ),
     (
         "position-missing",
@@ -190,29 +250,32 @@ SHARED = [
     ),
     (
         "yaw-only",
-        _moved(lambda p, R, offset: p + _yaw(math.atan2(R[1, 0], R[0, 0])) @ offset),
-        "The offset was turned about z only, as if every object stood upright.",
-        "Objects can be tilted. Use the whole rotation, not an angle of it.",
+        _yaw_of_matrix,
+        *UPRIGHT_ONLY,
     ),
-    (
-        "yaw-only",
-        _yaw_of_quaternion,
-        "The offset was turned about z only, as if every object stood upright.",
-        "Objects can be tilted. Use the whole rotation, not an angle of it.",
+    ("yaw-only", _yaw_of_quaternion, *UPRIGHT_ONLY),
+    *(
+        ("quaternion-order", wrong, *READ_IN_ANOTHER_ORDER)
+        for order in ORDERS
+        for wrong in (_with_quaternion_read(order, copied=True), _with_quaternion_read(order, copied=False))
     ),
     *(
         (
             "quaternion-order",
-            wrong,
-            f"The numbers of the quaternion were {done} in another order than ROS's.",
-            "Which comes first in `tf.transformations`, and which last: is w at the front or at the end?",
+            _with_quaternion_written(order),
+            "The numbers of the quaternion were written in another order than ROS's.",
+            READ_IN_ANOTHER_ORDER[1],
         )
-        for order in ([3, 0, 1, 2], [1, 2, 3, 0], [3, 2, 1, 0])
-        for done, wrong in (
-            ("read", _with_quaternion_read(order, copied=True)),
-            ("read", _with_quaternion_read(order, copied=False)),
-            ("written", _with_quaternion_written(order)),
+        for order in ORDERS
+    ),
+    *(
+        (
+            "quaternion-order;wrong-sign",
+            lambda object_pose, offset, wrong=wrong: wrong(object_pose, -np.asarray(offset)),
+            *together(READ_IN_ANOTHER_ORDER, OPPOSITE_SIDE),
         )
+        for order in ORDERS
+        for wrong in (_with_quaternion_read(order, copied=True), _with_quaternion_read(order, copied=False))
     ),
 ]
 
@@ -221,6 +284,11 @@ def _behind(wrong):
     """The wrong `waypoint` as a wrong `pre_grasp`."""
     return lambda object_pose, distance=0.1: wrong(object_pose, (-distance, 0.0, 0.0))
 
+
+ALWAYS_TEN = (
+    "The answer is always 10 cm away from the object, whatever distance is asked for.",
+    "Your function has a second argument; 0.1 is only what it is when nobody gives it.",
+)
 
 PRE_GRASP = Exercise(
     name="pre_grasp",
@@ -233,10 +301,32 @@ PRE_GRASP = Exercise(
     misconceptions=(
         *(Misconception(identifier, _behind(wrong), says, hint) for identifier, wrong, says, hint in SHARED),
         Misconception(
+            "distance-ignored", lambda object_pose, distance=0.1: pre_grasp(object_pose), *ALWAYS_TEN
+        ),
+        Misconception(
+            "distance-ignored;wrong-sign",
+            lambda object_pose, distance=0.1: pre_grasp(object_pose, -0.1),
+            *together(ALWAYS_TEN, OPPOSITE_SIDE),
+        ),
+        Misconception(
+            "distance-ignored;base-frame-offset",
+            _behind(_moved(lambda p, R, offset: p - (0.1, 0, 0))),
+            *together(ALWAYS_TEN, IN_THE_BASE),
+        ),
+        Misconception(
             "distance-ignored",
-            lambda object_pose, distance=0.1: pre_grasp(object_pose),
-            "The answer is always 10 cm behind the object, whatever distance is asked for.",
-            "Your function has a second argument; 0.1 is only what it is when nobody gives it.",
+            lambda object_pose, distance=0.1: pre_grasp(object_pose, abs(distance)),
+            "The sign of the distance is ignored.",
+            "A negative distance behind the object is a place in front of it.",
+        ),
+        *(
+            Misconception(
+                "wrong-units",
+                lambda object_pose, distance=0.1, factor=factor: pre_grasp(object_pose, factor * distance),
+                "The distance was converted to other units.",
+                "The distance is in metres, as all lengths are: nothing needs to be converted.",
+            )
+            for factor in (100, 0.01)
         ),
         *(
             Misconception(
@@ -271,6 +361,33 @@ WAYPOINT = Exercise(
             _moved(lambda p, R, offset: p + R[:, 0] * offset[0]),
             "Only the first number of the offset is used.",
             "The offset can go along all three axes of the object.",
+        ),
+        Misconception(
+            "wrong-axis",
+            _moved(lambda p, R, offset: p + R[:, 0] * np.linalg.norm(offset)),
+            "You move along the object's x axis, by the length of the offset.",
+            "The offset has a direction, too: its three numbers count along the object's three axes.",
+        ),
+        *(
+            Misconception(
+                "elementwise-product",
+                _moved(lambda p, R, offset, of=of: p + of(R, offset)),
+                "Rotation and offset were multiplied entry by entry.",
+                "`*` is not the matrix product in NumPy. Which operator is?",
+            )
+            for of in (lambda R, offset: np.sum(R * offset, axis=0), lambda R, offset: np.diag(R) * offset)
+        ),
+        Misconception(
+            "distance-ignored",
+            _moved(lambda p, R, offset: p + 0.1 * R @ offset / max(np.linalg.norm(offset), 1e-12)),
+            "The answer is always 10 cm away, whatever the length of the offset.",
+            "The offset says how far to go, not only in which direction.",
+        ),
+        Misconception(
+            "euler-order",
+            _moved(lambda p, R, offset: p + _angles_reversed(R) @ offset),
+            "Roll, pitch and yaw were put together in another order than they were taken apart.",
+            "A rotation matrix or a quaternion can be used as it is, without any angles.",
         ),
         Misconception(
             "rotation-applied-twice",

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from .cases import half_turn, quaternion, rotation, rotation_about, signed_permutations, slanted_axis, tilt, transform
-from .specification import Case, Exercise, Misconception
+from .specification import Case, Exercise, Misconception, together
 
 TOLERANCE = 1e-6
 
@@ -39,6 +39,19 @@ def _z_axis_lost(degrees):
     return R
 
 
+IN_RADIANS = (
+    "The angle was taken as radians, but it is given in degrees.",
+    "NumPy's and Python's sine and cosine expect radians.",
+)
+THE_OTHER_WAY_ROUND = (
+    "Your frame turns the other way round: B's axes stand in the rows of your matrix, not in its columns.",
+    "For a small positive angle, where does B's x axis point in A? That is the first column.",
+)
+TRUNCATED = (
+    "Digits after the decimal point are cut off.",
+    "An array made of whole numbers cuts off what is written into it, and `int` does the same: "
+    "`np.array([1.0])` keeps fractions, `np.array([1])` does not.",
+)
 ABOUT_ANOTHER_AXIS = (
     "Your matrix turns about another axis than z.",
     "The axis of a rotation stays where it is: which column of your matrix should be the z axis, unchanged?",
@@ -62,8 +75,21 @@ ABOUT_Z = Exercise(
         Misconception(
             "degrees-as-radians",
             lambda degrees: Rotation.from_euler("z", degrees).as_matrix(),
-            "The angle was taken as radians, but it is given in degrees.",
-            "NumPy's and Python's sine and cosine expect radians.",
+            *IN_RADIANS,
+        ),
+        Misconception(
+            "degrees-as-radians;rotation-transposed",
+            lambda degrees: Rotation.from_euler("z", -degrees).as_matrix(),
+            *together(IN_RADIANS, THE_OTHER_WAY_ROUND),
+        ),
+        *(
+            Misconception("integer-truncation", wrong, *TRUNCATED)
+            for wrong in (lambda degrees: rotation_about_z(int(degrees)), lambda degrees: np.trunc(rotation_about_z(degrees)))
+        ),
+        Misconception(
+            "integer-truncation;rotation-transposed",
+            lambda degrees: rotation_about_z(-int(degrees)),
+            *together(TRUNCATED, THE_OTHER_WAY_ROUND),
         ),
         *(
             Misconception(
@@ -76,8 +102,7 @@ ABOUT_Z = Exercise(
         Misconception(
             "rotation-transposed",
             lambda degrees: rotation_about_z(-degrees),
-            "Your frame turns the other way round: B's axes stand in the rows of your matrix, not in its columns.",
-            "For a small positive angle, where does B's x axis point in A? That is the first column.",
+            *THE_OTHER_WAY_ROUND,
         ),
         *(
             Misconception(
@@ -153,6 +178,20 @@ def _axes_with(third):
     return lambda x_axis, y_axis: np.column_stack((x_axis, y_axis, third(x_axis, y_axis)))
 
 
+AXES_IN_ROWS = (
+    "B's axes stand in the rows of your matrix.",
+    "The matrix describes B in A: each axis of B, written in A, is one of its columns.",
+)
+THIRD_AXIS_OPPOSITE = (
+    "Your z axis points the opposite way, which makes a left-handed frame.",
+    "Point your right index finger along x and your middle finger along y; the thumb shows z. "
+    "The order of a cross product matters.",
+)
+THIRD_AXIS_BY_ENTRIES = (
+    "Your z axis is the product of x and y component by component.",
+    "`*` multiplies entry by entry. Which product of two vectors is at right angles to both?",
+)
+
 FROM_AXES = Exercise(
     name="rotation_from_axes",
     returns="rotation",
@@ -163,15 +202,24 @@ FROM_AXES = Exercise(
         Misconception(
             "rotation-transposed",
             lambda x_axis, y_axis: rotation_from_axes(x_axis, y_axis).T,
-            "B's axes stand in the rows of your matrix.",
-            "The matrix describes B in A: each axis of B, written in A, is one of its columns.",
+            *AXES_IN_ROWS,
+        ),
+        Misconception("left-handed", _axes_with(lambda x, y: np.cross(y, x)), *THIRD_AXIS_OPPOSITE),
+        Misconception(
+            "left-handed;rotation-transposed",
+            lambda x_axis, y_axis: np.array([x_axis, y_axis, np.cross(y_axis, x_axis)]),
+            *together(THIRD_AXIS_OPPOSITE, AXES_IN_ROWS),
         ),
         Misconception(
-            "left-handed",
-            _axes_with(lambda x, y: np.cross(y, x)),
-            "Your z axis points the opposite way, which makes a left-handed frame.",
-            "Point your right index finger along x and your middle finger along y; the thumb shows z. "
-            "The order of a cross product matters.",
+            "elementwise-product;rotation-transposed",
+            lambda x_axis, y_axis: np.array([x_axis, y_axis, x_axis * y_axis]),
+            *together(THIRD_AXIS_BY_ENTRIES, AXES_IN_ROWS),
+        ),
+        Misconception(
+            "axes-swapped",
+            lambda x_axis, y_axis: np.column_stack((y_axis, x_axis, np.cross(y_axis, x_axis))),
+            "You took x for y, and y for x.",
+            "In which order are the two axes given, and in which columns do they belong?",
         ),
         Misconception(
             "third-axis-assumed",
@@ -188,8 +236,7 @@ FROM_AXES = Exercise(
         Misconception(
             "elementwise-product",
             _axes_with(lambda x, y: x * y),
-            "Your z axis is the product of x and y component by component.",
-            "`*` multiplies entry by entry. Which product of two vectors is at right angles to both?",
+            *THIRD_AXIS_BY_ENTRIES,
         ),
         Misconception(
             "added-not-multiplied",
@@ -243,29 +290,32 @@ def is_rotation_cases(rng):
     along_axes = signed_permutations()
     mirror_normal = slanted_axis(rng)
     mirror = np.eye(3) - 2.0 * np.outer(mirror_normal, mirror_normal)
-    shear, stretch = np.eye(3), np.diag([2.0, 0.5, 1.0])
+    shear, stretch, mild = np.eye(3), np.diag([2.0, 0.5, 1.0]), np.diag([1.25, 1.0, 0.8])
     shear[0, 1] = 0.5
-    leaning = shear / np.linalg.norm(shear, axis=0)  # unit columns that are not at right angles
+    leaning = shear / np.linalg.norm(shear, axis=0)  # unit columns, of which the first two are not at right angles
+    two_lean = [rotation(rng) @ leaning[:, order] for order in ([0, 1, 2], [2, 0, 1], [1, 2, 0])]
+    one_long = [rotation(rng) @ np.diag(np.roll([1.01, 1.0, 1.0], shift)) for shift in range(3)]
     changed = [half_turn(rng) for _ in range(3)]  # no entry of these is near zero, so any change shows
     for R in changed:
         R[rng.integers(3), rng.integers(3)] += 1e-3
     families = {
         "a rotation, or a mirror image of one": [
             rotation(rng), np.eye(3), half_turn(rng),
-            rotation(rng) @ np.diag([1.0, 1.0, -1.0]), -np.eye(3), mirror @ rotation(rng),
+            rotation(rng) @ np.diag([1.0, 1.0, -1.0]), -np.eye(3), mirror @ rotation(rng) * (1.0 - 1e-9),
         ],
         "a rotation, or one with two of its columns swapped": [
             np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]), rotation(rng).T,
             np.eye(3)[:, [1, 0, 2]], rotation(rng)[:, [0, 2, 1]],
         ],
         "a rotation, or axes that are not at right angles": [
-            rotation(rng), tilt(rng), shear, rotation(rng) @ shear, rotation(rng) @ leaning, leaning.T @ rotation(rng),
+            rotation(rng), tilt(rng), shear, rotation(rng) @ shear, leaning.T @ rotation(rng), *two_lean,
         ],
         "a rotation, or one stretched along one axis and squeezed along another": [
-            rotation(rng), along_axes[rng.integers(24)], stretch, rotation(rng) @ stretch, stretch @ rotation(rng),
+            rotation(rng), along_axes[rng.integers(24)], stretch, stretch @ rotation(rng), rotation(rng) @ mild,
         ],
-        "a rotation, or one made larger or smaller as a whole": [
+        "a rotation, or one made larger or smaller, as a whole or along one axis": [
             rotation(rng), tilt(rng), 2.0 * rotation(rng), 0.5 * rotation(rng), 1.01 * rotation(rng), np.zeros((3, 3)),
+            *one_long,
         ],
         "a rotation with rounding errors of 1e-9, or one with a number that is off by 0.001": [
             rotation(rng) + rng.uniform(-1e-9, 1e-9, size=(3, 3)), tilt(rng) + rng.uniform(-1e-9, 1e-9, size=(3, 3)),
@@ -287,6 +337,14 @@ def _unit_columns_only(R):
 ANSWER_REVERSED = (
     "Every answer is the opposite of the right one.",
     "Read the docstring again: when does the function return True?",
+)
+MIRROR_IMAGES = (
+    "You accept mirror images: their axes have length 1 and right angles, but make a left-handed frame.",
+    "Which single number of a matrix tells a right-handed frame from a left-handed one?",
+)
+DIGIT_BY_DIGIT = (
+    "You reject rotations whose numbers carry tiny rounding errors.",
+    "Numbers that were computed are rarely equal to the last digit: compare with a tolerance.",
 )
 DETERMINANT_ONLY = (
     "You accept matrices whose determinant is right but whose axes are not.",
@@ -311,14 +369,12 @@ IS_ROTATION = Exercise(
         Misconception(
             "reflection-accepted",
             lambda R: _close(R.T @ R, np.eye(3)),
-            "You accept mirror images: their axes have length 1 and right angles, but make a left-handed frame.",
-            "Which single number of a matrix tells a right-handed frame from a left-handed one?",
+            *MIRROR_IMAGES,
         ),
         Misconception(
             "exact-comparison",
             lambda R: np.array_equal(R.T @ R, np.eye(3)) and np.linalg.det(R) == 1.0,
-            "You reject rotations whose numbers carry tiny rounding errors.",
-            "Numbers that were computed are rarely equal to the last digit: compare with a tolerance.",
+            *DIGIT_BY_DIGIT,
         ),
         Misconception(
             "loose-comparison",
@@ -362,6 +418,18 @@ IS_ROTATION = Exercise(
                 lambda R: not _close(np.linalg.det(R), 0.0),
             )
         ),
+        Misconception(
+            "pair-not-compared",
+            lambda R: _close(np.linalg.norm(R, axis=0), 1.0) and _close([R[:, 0] @ R[:, 1], R[:, 1] @ R[:, 2]], 0.0)
+            and np.linalg.det(R) > 0,
+            "You compare two pairs of axes, and not the third.",
+            "How many pairs do three axes make? x with y, y with z, …",
+        ),
+        Misconception(
+            "reflection-accepted;exact-comparison",
+            lambda R: np.array_equal(R.T @ R, np.eye(3)),
+            *together(MIRROR_IMAGES, DIGIT_BY_DIGIT),
+        ),
         Misconception("answer-reversed", lambda R: not is_rotation(R), *ANSWER_REVERSED),
     ),
 )
@@ -394,6 +462,10 @@ def same_rotation_cases(rng):
     other = axis[[1, 2, 0]] * [1, 1, -1]  # the dot product of the two is 0.5 at most
     first_half, second_half = (np.append(a, 0.0) for a in (rng.permutation([0.36, 0.48, 0.8]), (0.0, 0.6, -0.8)))
     mirrored = axis * [1, -1, 1]
+    # Every component of one is larger than that of another with a minus sign, and none is twice that of the other.
+    positive = rng.permutation([0.40, 0.45, 0.55, 0.60])
+    all_positive = [np.roll(positive, shift) / np.linalg.norm(positive) for shift in range(3)]
+    positive_unit = all_positive[0]
     # "About a degree" is 0.01 in the components and 5e-5 in the dot product: who compares the dot product with 1 in the
     # way of `np.isclose` (relative tolerance 1e-5) has understood the matter, and is right here.
     families = {
@@ -401,11 +473,15 @@ def same_rotation_cases(rng):
         "two half turns (w is 0)": [
             (first_half, -first_half), (-second_half, second_half), (first_half, second_half),
         ],
-        "the same quaternion twice, or two unrelated ones": [(q[3], q[3]), (q[4], q[5]), (q[6], -q[7]), (-q[8], q[8])],
+        "the same quaternion twice, or two unrelated ones": [
+            (q[3], q[3]), (q[4], q[5]), (q[6], -q[7]), (-q[8], q[8]), (all_positive[0], all_positive[1]),
+            (-all_positive[1], all_positive[2]),
+        ],
         "a turn and the opposite turn": [
             (tilted[0], tilted[0] * _OPPOSITE), (tilted[1], -tilted[1] * _OPPOSITE), (tilted[2], -tilted[2]),
         ],
-        "two turns by the same angle, or about the same axis": [
+        "two quaternions with one number in common, or about the same axis": [
+            *((positive_unit, np.insert(np.roll(np.delete(positive_unit, i), 1), i, positive_unit[i])) for i in range(4)),
             (turn(axis, 0.9), turn(other, 0.9)), (turn(axis, 0.9), turn(mirrored, 0.9)),
             (turn(axis, 0.5), -turn(axis, 1.4)), (turn(axis, 1.4), -turn(axis, 1.4)),
         ],
@@ -417,8 +493,13 @@ def same_rotation_cases(rng):
     return [Case(family, pair) for family, pairs in families.items() for pair in pairs]
 
 
-def _upper_half(q):
-    return q if q[3] >= 0 else -q
+def _made_positive(index):
+    """Compares after making the number at `index` positive."""
+
+    def upper(q):
+        return q if q[index] >= 0 else -q
+
+    return lambda q1, q2: _close(upper(q1), upper(q2))
 
 
 def _same_axis(q1, q2):
@@ -428,6 +509,23 @@ def _same_axis(q1, q2):
 OPPOSITE_ACCEPTED = (
     "You take a turn and the opposite turn for the same orientation.",
     "Negating x, y and z turns the axis round. What has to happen to w for the orientation to stay the same?",
+)
+
+OPPOSITE_REJECTED = (
+    "You take q and -q for different orientations.",
+    "Turn q and -q into rotation matrices, and compare the two matrices.",
+)
+NO_TOLERANCE = (
+    "You take quaternions for different that differ by rounding only.",
+    "Numbers that were computed are rarely equal to the last digit: compare with a tolerance.",
+)
+SIGNS_DROPPED = (
+    "You drop the sign of each number by itself, and so take some different orientations for the same.",
+    "Either all four signs differ or none does; what if only some of them do?",
+)
+ANGLE_ONLY = (
+    "You compare the angles only: w says how far a rotation turns, not about what.",
+    "Two turns by 30 degrees about different axes are different orientations.",
 )
 
 SAME_ROTATION = Exercise(
@@ -440,14 +538,12 @@ SAME_ROTATION = Exercise(
         Misconception(
             "sign-ignored",
             _close,
-            "You take q and -q for different orientations.",
-            "Turn q and -q into rotation matrices, and compare the two matrices.",
+            *OPPOSITE_REJECTED,
         ),
         Misconception(
             "exact-comparison",
             lambda q1, q2: np.array_equal(q1, q2) or np.array_equal(q1, -q2),
-            "You take quaternions for different that differ by rounding only.",
-            "Numbers that were computed are rarely equal to the last digit: compare with a tolerance.",
+            *NO_TOLERANCE,
         ),
         Misconception(
             "loose-comparison",
@@ -458,8 +554,7 @@ SAME_ROTATION = Exercise(
         Misconception(
             "component-signs-dropped",
             lambda q1, q2: _close(np.abs(q1), np.abs(q2)),
-            "You drop the sign of each number by itself, and so take some different orientations for the same.",
-            "Either all four signs differ or none does; what if only some of them do?",
+            *SIGNS_DROPPED,
         ),
         *(
             Misconception("rotation-transposed", wrong, *OPPOSITE_ACCEPTED)
@@ -471,8 +566,7 @@ SAME_ROTATION = Exercise(
         Misconception(
             "angle-only",
             lambda q1, q2: _close(abs(q1[3]), abs(q2[3])),
-            "You compare the angles only: w says how far a rotation turns, not about what.",
-            "Two turns by 30 degrees about different axes are different orientations.",
+            *ANGLE_ONLY,
         ),
         Misconception(
             "axis-only",
@@ -482,9 +576,34 @@ SAME_ROTATION = Exercise(
         ),
         Misconception(
             "half-turn-missed",
-            lambda q1, q2: _close(_upper_half(q1), _upper_half(q2)),
+            _made_positive(3),
             "You make w positive first, and that does not decide between q and -q when w is 0.",
             "What is the sign of w for a half turn? Compare in a way that does not need it.",
+        ),
+        Misconception(
+            "half-turn-missed;quaternion-order",
+            _made_positive(0),
+            "You make x positive first (or take it for w), and that does not decide between q and -q when x is 0.",
+            "ROS writes w last; and what if the number whose sign you look at is 0? Compare in a way that needs no sign.",
+        ),
+        Misconception(
+            "any-for-all",
+            lambda q1, q2: bool(np.any(np.abs(q1 - q2) <= TOLERANCE) or np.any(np.abs(q1 + q2) <= TOLERANCE)),
+            "You take orientations for the same when one of the four numbers agrees.",
+            "All four numbers have to agree at once: what is the difference between `any` and `all`?",
+        ),
+        Misconception(
+            "sign-ignored;exact-comparison", np.array_equal, *together(OPPOSITE_REJECTED, NO_TOLERANCE)
+        ),
+        Misconception(
+            "angle-only;sign-ignored",
+            lambda q1, q2: _close(q1[3], q2[3]),
+            *together(ANGLE_ONLY, OPPOSITE_REJECTED),
+        ),
+        Misconception(
+            "component-signs-dropped;exact-comparison",
+            lambda q1, q2: np.array_equal(np.abs(q1), np.abs(q2)),
+            *together(SIGNS_DROPPED, NO_TOLERANCE),
         ),
         Misconception("answer-reversed", lambda q1, q2: not same_rotation(q1, q2), *ANSWER_REVERSED),
     ),

@@ -11,10 +11,10 @@ from inspect import signature
 import numpy as np
 from transform_lab import codec
 from transform_lab.answers import PARTS, same
-from transform_lab.diagnosis import error_of
 
 PUBLIC_SEED = 24  # the cases students see; any other seed draws hidden ones
-DIGITS = 12  # decimals kept in the key: far below the tolerance of 1e-6
+DIGITS = 12  # decimals kept of arguments and right answers: far below the tolerance of 1e-6
+DIGITS_WRONG = 8  # of wrong answers, which are most of the key
 
 
 @dataclass(frozen=True)
@@ -34,6 +34,21 @@ class Misconception:
     wrong: Callable
     says: str  # what the answer shows
     hint: str  # helps without giving the solution away
+
+
+class Anything:
+    """Returned by a wrong implementation where it breaks down: these parts of its answer may be anything.
+
+    For misconceptions that are a kind of formula rather than one formula, and where the answer is a matter of rounding.
+    """
+
+    def __init__(self, *parts):
+        self.parts = parts
+
+
+def together(*messages):
+    """(says, hint) of several mistakes at once, from the (says, hint) of each."""
+    return tuple(" ".join(texts) for texts in zip(*messages))
 
 
 @dataclass(frozen=True)
@@ -90,26 +105,31 @@ def _case(exercise, case):
         "kwargs": kwargs,
         "expected": expected,
         "wrong": [
-            None if not error_of(answer) and same(exercise.returns, answer, expected) else answer
-            for answer in wrong
+            None if _right(exercise.returns, answer, expected) else _rounded(answer, DIGITS_WRONG) for answer in wrong
         ],
     }
+
+
+def _right(returns, answer, expected):
+    special = isinstance(answer, dict) and answer.keys() & {"any", "raises"}
+    return not special and same(returns, answer, expected)
 
 
 def _answer(function, args, kwargs):
     args, kwargs = [codec.decode(arg) for arg in args], {name: codec.decode(arg) for name, arg in kwargs.items()}
     with np.errstate(all="ignore"):  # wrong implementations divide by zero; that is their point
         try:
-            return _rounded(codec.encode(function(*args, **kwargs)))
+            answer = function(*args, **kwargs)
+            return {"any": list(answer.parts)} if isinstance(answer, Anything) else _rounded(codec.encode(answer))
         except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError, np.linalg.LinAlgError) as error:
             return {"raises": type(error).__name__}
 
 
-def _rounded(plain):
+def _rounded(plain, digits=DIGITS):
     if isinstance(plain, float):
-        return round(plain, DIGITS) + 0.0
+        return round(plain, digits) + 0.0
     if isinstance(plain, list):
-        return [_rounded(item) for item in plain]
+        return [_rounded(item, digits) for item in plain]
     if isinstance(plain, dict):
-        return {name: _rounded(item) for name, item in plain.items()}
+        return {name: _rounded(item, digits) for name, item in plain.items()}
     return plain

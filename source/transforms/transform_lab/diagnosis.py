@@ -8,6 +8,7 @@ is named: a wrong name is worse than none.
 
 import re
 from collections import Counter
+from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
@@ -85,11 +86,9 @@ def constant(replies):
 def _explain(exercise, replies, outcomes):
     if all(outcome.answered for outcome in outcomes):
         return Diagnosis()
-    found = _one_of(
-        misconception
-        for index, misconception in enumerate(exercise["misconceptions"])
-        if _explains(index, exercise, replies, outcomes)
-    )
+    fitting = [index for index in range(len(exercise["misconceptions"])) if _explains(index, exercise, replies, outcomes)]
+    exact = [index for index in fitting if not any(_open_parts(case["wrong"][index]) for case in exercise["cases"])]
+    found = _one_of(exercise["misconceptions"][index] for index in exact or fitting)
     if found is not None:
         return found
     problems = [outcome.problem for outcome in outcomes if outcome.problem]
@@ -125,9 +124,13 @@ def _explains(index, exercise, replies, outcomes):
                 return False
             continue
         differs = True
-        if outcome.answered:
+        if open_parts := _open_parts(wrong):
+            closed = set(PARTS[exercise["returns"]]) - open_parts
+            if outcome.got is not None and not closed <= outcome.parts:
+                return False
+        elif outcome.answered:
             return False
-        if raises := error_of(wrong):
+        elif raises := error_of(wrong):
             if reply.outcome != "raised" or reply.error.partition(":")[0] != raises:
                 return False
         elif reply.outcome != "returned" or not same(exercise["returns"], reply.value, wrong):
@@ -138,6 +141,11 @@ def _explains(index, exercise, replies, outcomes):
 def error_of(wrong):
     """The name of the exception that a misconception's answer in the key stands for, or None."""
     return wrong.get("raises") if isinstance(wrong, dict) else None
+
+
+def _open_parts(wrong):
+    """The parts of the answer that may be anything, where a misconception's answer hangs on how it is computed."""
+    return set(wrong.get("any", ())) if isinstance(wrong, dict) else set()
 
 
 def _general(problems, replies):
@@ -160,39 +168,64 @@ def _general(problems, replies):
 
 
 def _part_by_part(exercise, outcomes):
-    """The Diagnosis of each wrong part of the answer by itself, together; none unless every one has exactly one."""
-    if exercise["returns"] == "truth":
-        return Diagnosis()
+    """The Diagnosis of the wrong parts of the answer by themselves, together.
+
+    There is one when exactly one set of misconceptions, of which no two touch the same part, explains all that is wrong.
+    """
     parts = PARTS[exercise["returns"]]
-    wrong = [part for part in parts if any(part not in outcome.parts for outcome in outcomes)]
+    wrong = {part for part in parts if any(part not in outcome.parts for outcome in outcomes)}
+    explained = {touched: _one_of(found) for touched, found in _partial_explanations(exercise, outcomes).items()}
+    sets = [
+        chosen
+        for size in range(1, len(wrong) + 1)
+        for chosen in combinations(sorted(explained, key=sorted), size)
+        if sum(map(len, chosen)) == len(wrong) and set().union(*chosen) == wrong
+    ]
+    if len(sets) != 1 or None in (found := [explained[touched] for touched in sets[0]]):
+        return Diagnosis()
+    return _together(sorted(found, key=lambda one: one.ids))
+
+
+def _partial_explanations(exercise, outcomes):
+    """{parts that they touch: [misconceptions that explain the answers in these parts]}"""
+    parts, found = PARTS[exercise["returns"]], {}
     expected = [parts_of(exercise["returns"], codec.decode(case["expected"])) for case in exercise["cases"]]
-    candidates = {part: [] for part in parts}
     for index, misconception in enumerate(exercise["misconceptions"]):
-        answers = _parts_of_misconception(index, exercise, expected)
-        changed = {part for answer, right in zip(answers, expected) for part in parts
-                   if not agree(part, answer[part], right[part])}  # fmt: skip
-        if len(changed) == 1:
-            (part,) = changed
-            if all(agree(part, outcome.got[part], answer[part]) for outcome, answer in zip(outcomes, answers)):
-                candidates[part].append(misconception)
-    found = []
-    for part in wrong:
+        wrong = _parts_of_misconception(index, exercise, expected)
+        touched = frozenset(
+            part
+            for answer, right in zip(wrong, expected)
+            for part in parts
+            if answer[part] is None or not agree(part, answer[part], right[part])
+        )
+        if touched and all(
+            answer[part] is None or agree(part, outcome.got[part], answer[part])
+            for outcome, answer in zip(outcomes, wrong)
+            for part in touched
+        ):
+            found.setdefault(touched, []).append(misconception)
+    for part in parts:
         pairs = [(outcome.got[part], right[part]) for outcome, right in zip(outcomes, expected)]
         for identifier, fits in (("not-normalised", _not_normalised), ("rounded", _rounded)):
-            if fits(part, pairs):
+            if any(part not in outcome.parts for outcome in outcomes) and fits(part, pairs):
                 says, hint = GENERAL[identifier]
-                candidates[part].append({"id": identifier, "says": says, "hint": hint})
-        found.append(_one_of(candidates[part]))
-    return Diagnosis() if None in found else _together(found)
+                found.setdefault(frozenset([part]), []).append({"id": identifier, "says": says, "hint": hint})
+    return found
 
 
 def _parts_of_misconception(index, exercise, expected):
-    """This misconception's answers, each as its parts; none where one of them cannot be compared part by part."""
+    """This misconception's answers, each as its parts, None for one that may be anything.
+
+    Nothing when one of the answers cannot be taken apart.
+    """
     answers = []
     for case, right in zip(exercise["cases"], expected):
         wrong = case["wrong"][index]
         if error_of(wrong):
             return []
+        if open_parts := _open_parts(wrong):
+            answers.append({part: None if part in open_parts else value for part, value in right.items()})
+            continue
         try:
             answers.append(right if wrong is None else parts_of(exercise["returns"], codec.decode(wrong)))
         except Unfit:
@@ -202,19 +235,22 @@ def _parts_of_misconception(index, exercise, expected):
 
 def _not_normalised(part, pairs):
     """Whether all these quaternions are right but for their length."""
+    if part != "orientation":
+        return False
     lengths = [np.linalg.norm(got) for got, _ in pairs]
-    return part == "orientation" and all(
+    return all(
         length > TOLERANCE and agree(part, got / length, right) for length, (got, right) in zip(lengths, pairs)
     )
 
 
 def _rounded(part, pairs):
     """Whether all these values are the right ones, rounded to some number of decimals."""
-    for step in (10.0**-decimals for decimals in range(1, 6)):
-        if all(
-            np.all(np.abs(got - step * np.round(got / step)) < 1e-9)
-            and any(np.abs(got - sign * right).max() <= 0.5 * step + 1e-9 for sign in ((1, -1) if part == "orientation" else (1,)))
+    signs = {"answer": (), "orientation": (1, -1)}.get(part, (1,))  # q and -q are the same orientation
+    return any(
+        all(
+            np.abs(got - step * np.round(got / step)).max() < 1e-9
+            and any(np.abs(got - sign * right).max() <= 0.5 * step + 1e-9 for sign in signs)
             for got, right in pairs
-        ):
-            return True
-    return False
+        )
+        for step in (0.1, 0.01, 1e-3, 1e-4, 1e-5)
+    )

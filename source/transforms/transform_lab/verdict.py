@@ -11,7 +11,8 @@ An exercise, as `examine` takes it, is a dictionary of plain data:
 - `weights`: {family of cases: how much it counts}
 - `misconceptions`: [{"id", "says", "hint"}, …]
 - `cases`: [{"family", "args", "kwargs", "expected", "wrong"}, …], where `wrong` holds what each misconception would
-  answer: null where it happens to be right, {"raises": name of the exception} where it raises
+  answer: null where it happens to be right, {"raises": name of the exception} where it raises, {"any": parts of the
+  answer} where these may be anything
 """
 
 from dataclasses import dataclass, field

@@ -1,0 +1,180 @@
+"""A misconception is named when it alone explains the answers, two when each explains a part, and else none."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+from mutants import mutants
+from scipy.spatial.transform import Rotation
+from test_exercises import NAMES, SEEDS, judged, poses
+from transform_lab import Point, Pose, Quaternion
+from transform_lab.answers import PARTS, agree, parts_of
+from transform_lab.diagnosis import GENERAL
+from transform_lab.verdict import Reply, examine
+
+from autograder.exercises import EXERCISES, PUBLIC_SEED
+
+every_exercise = pytest.mark.parametrize("name", NAMES)
+MATRICES_AND_POSES = [name for name in NAMES if len(PARTS[EXERCISES[name].returns]) > 1]
+
+
+def split(name, answer):
+    return parts_of(EXERCISES[name].returns, answer)
+
+
+def joined(name, parts):
+    """An answer of these parts."""
+    if EXERCISES[name].returns == "pose":
+        return Pose(Point(*parts["position"]), Quaternion(*parts["orientation"]))
+    return np.vstack([np.column_stack([parts["rotation"], parts["translation"]]), parts["bottom row"]])
+
+
+# --- one name -------------------------------------------------------------------------------------------------------
+
+
+@every_exercise
+def test_the_name_does_not_hang_on_the_cases(name):
+    """Whatever a wrong program is called on some cases, it is called on others."""
+    with np.errstate(all="ignore"):
+        for what, mutant in mutants(EXERCISES[name].reference, "autograder.exercises"):
+            if mutant is not None:
+                called = {judged(name, mutant, seed).misconceptions for seed in SEEDS}
+                assert len(called) == 1 or called <= {(), *((identifier,) for identifier in GENERAL)}, what
+
+
+@every_exercise
+def test_noise_gets_no_name(name):
+    """Right answers with something added that no misconception explains."""
+    exercise, rng = EXERCISES[name], np.random.default_rng(5)
+    for size, seed in product((1e-5, 1e-2, 1.0), SEEDS):
+        offset, turn = size * rng.uniform(0.3, 1.0, size=3), Rotation.from_rotvec(size * rng.uniform(0.3, 1.0, size=3))
+
+        def noisy(*args, **kwargs):
+            answer = exercise.reference(*args, **kwargs)
+            if exercise.returns == "truth":
+                return bool(rng.integers(2))
+            parts = split(name, answer)
+            for part, value in parts.items():
+                if part == "rotation":
+                    parts[part] = turn.as_matrix() @ value
+                elif part == "orientation":
+                    parts[part] = (turn * Rotation.from_quat(value)).as_quat()
+                elif part != "bottom row":
+                    parts[part] = value + offset
+            return joined(name, parts) if len(parts) > 1 else next(iter(parts.values()))
+
+        verdict = judged(name, noisy, seed)
+        assert (verdict.right, verdict.misconceptions) == (False, ())
+
+
+def test_no_name_when_two_fit():
+    """A case on which two misconceptions agree does not tell them apart."""
+    exercise = {
+        "parameters": ["R"], "returns": "truth", "answer": "", "credit": {}, "weights": {"a case": 1},
+        "misconceptions": [{"id": name, "says": name, "hint": name} for name in ("one", "two")],
+        "cases": [{"family": "a case", "args": [n], "kwargs": {}, "expected": n > 0, "wrong": [True, True]}
+                  for n in (-1, -2)],
+    }  # fmt: skip
+
+    def call(args, kwargs):
+        return Reply("returned", True, [args, kwargs])
+
+    assert examine("is_rotation", exercise, call).misconceptions == ("hard-coded",)
+    exercise["cases"].append({"family": "a case", "args": [3], "kwargs": {}, "expected": False, "wrong": [True, None]})
+    assert examine("is_rotation", exercise, lambda args, kwargs: Reply("returned", args[0] < 0, [args, kwargs])
+                   ).misconceptions == ("two",)  # fmt: skip
+    exercise["cases"][-1]["wrong"] = [None, None]
+    assert examine("is_rotation", exercise, lambda args, kwargs: Reply("returned", args[0] < 0, [args, kwargs])
+                   ).misconceptions == ()  # fmt: skip
+
+
+def test_another_error_than_the_misconceptions_own_is_not_named():
+    """The trace formula in plain Python divides by zero at a half turn; who raises something else has another problem."""
+    (wrong,) = (m.wrong for m in EXERCISES["transform_to_pose"].misconceptions if "plain_python" in _names(m.wrong))
+    assert judged("transform_to_pose", wrong).misconceptions == ("trace-formula-only",)
+
+    def otherwise(matrix):
+        try:
+            return wrong(matrix)
+        except ZeroDivisionError:
+            raise IndexError("of another kind") from None
+
+    assert judged("transform_to_pose", otherwise).misconceptions == ()
+
+
+def _names(function):
+    return " ".join(cell.cell_contents.__name__ for cell in function.__closure__ or () if callable(cell.cell_contents))
+
+
+# --- two mistakes at once -------------------------------------------------------------------------------------------
+
+
+def of_one_part(name):
+    """{part: [misconceptions that leave the other parts right]}"""
+    exercise, found = EXERCISES[name], {}
+    cases = exercise.cases(np.random.default_rng(PUBLIC_SEED))
+    for misconception in exercise.misconceptions:
+        changed = set()
+        try:
+            with np.errstate(all="ignore"):
+                for case in cases:
+                    right = split(name, exercise.reference(*case.args, **case.kwargs))
+                    wrong = split(name, misconception.wrong(*case.args, **case.kwargs))
+                    changed |= {part for part in right if not agree(part, wrong[part], right[part])}
+        except (ValueError, ArithmeticError):
+            continue
+        if len(changed) == 1:
+            found.setdefault(changed.pop(), []).append(misconception)
+    return found
+
+
+@pytest.mark.parametrize("name", MATRICES_AND_POSES)
+def test_two_mistakes_in_two_parts_are_both_named(name):
+    first_part, second_part = PARTS[EXERCISES[name].returns][:2]
+    candidates = of_one_part(name)
+    pairs = list(product(candidates.get(first_part, []), candidates.get(second_part, [])))
+    assert pairs or name in ("chain", "relative_transform", "waypoint")
+    for first, second in pairs:
+
+        def both(*args, first=first, second=second, **kwargs):
+            parts = split(name, second.wrong(*args, **kwargs))
+            parts[first_part] = split(name, first.wrong(*args, **kwargs))[first_part]
+            return joined(name, parts)
+
+        whole = [m.id for m in EXERCISES[name].misconceptions]
+        verdict = judged(name, both)
+        expected = tuple(dict.fromkeys((first.id, second.id)))
+        assert verdict.misconceptions == expected or (len(verdict.misconceptions) == 1 and
+                                                      verdict.misconceptions[0] in whole), (first.id, second.id)  # fmt: skip
+
+
+@pytest.mark.parametrize("name", poses())
+def test_a_quaternion_of_another_length_beside_another_mistake(name):
+    def wrong(*args, **kwargs):
+        parts = split(name, EXERCISES[name].reference(*args, **kwargs))
+        return joined(name, {"position": parts["position"], "orientation": 2.0 * parts["orientation"]})
+
+    def doubly_wrong(*args, **kwargs):
+        answer = wrong(*args, **kwargs)
+        answer.position = Point(0, 0, 0)
+        return answer
+
+    assert judged(name, wrong).misconceptions == ("not-normalised",)
+    assert set(judged(name, doubly_wrong).misconceptions) <= {"not-normalised", "position-missing"}
+
+
+@every_exercise
+def test_rounded_answers_are_named(name):
+    def rounding(decimals):
+        def rounded(*args, **kwargs):
+            answer = EXERCISES[name].reference(*args, **kwargs)
+            if EXERCISES[name].returns == "pose":
+                return joined(name, {part: value.round(decimals) for part, value in split(name, answer).items()})
+            return np.round(answer, decimals)
+
+        return rounded
+
+    for decimals in (2, 3, 5):
+        verdict = judged(name, rounding(decimals))
+        if not verdict.right:
+            assert verdict.misconceptions == ("rounded",)
