@@ -32,13 +32,14 @@ def rotation_about(axis, angle):
     return Rotation.from_rotvec(angle * np.asarray(axis, dtype=float) / np.linalg.norm(axis)).as_matrix()
 
 
-def half_turn(rng):
+def half_turn(rng, largest=None):
     """A half turn about a slanted axis: catches formulas that lose the relative signs of the axis.
 
     The axis is (0.36, 0.48, 0.8) in some order and with some signs. With it the entries have four decimals and the
     trace is exactly -1 in whatever order it is summed, so a formula that breaks at a half turn breaks in one way only.
+    `largest` (0, 1, 2) is the component of the axis that is largest, for formulas that have a branch for each.
     """
-    axis = rng.permutation([0.36, 0.48, 0.8]) * rng.choice([-1.0, 1.0], size=3)
+    axis = _with_largest(largest, rng.permutation([0.36, 0.48, 0.8])) * rng.choice([-1.0, 1.0], size=3)
     return 2.0 * np.outer(axis, axis) - np.eye(3)
 
 
@@ -51,9 +52,9 @@ def near_half_turn(rng, short):
     return rotation_about(slanted_axis(rng), np.pi - short)
 
 
-def wide_turn(rng):
-    """A turn by 125 to 170 degrees about a slanted axis: the trace is negative."""
-    return rotation_about(slanted_axis(rng), np.radians(rng.uniform(125.0, 170.0)))
+def wide_turn(rng, largest=None):
+    """A turn by 125 to 170 degrees about a slanted axis: the trace is negative. `largest`: see `half_turn`."""
+    return rotation_about(slanted_axis(rng, largest), np.radians(rng.uniform(125.0, 170.0)))
 
 
 def tilt(rng):
@@ -61,10 +62,16 @@ def tilt(rng):
     return rotation_about(slanted_axis(rng), np.radians(rng.uniform(20.0, 80.0)))
 
 
-def slanted_axis(rng):
-    """A unit vector away from every coordinate axis and plane, of mixed signs."""
-    axis = rng.uniform(0.3, 1.0, size=3) * rng.choice([-1.0, 1.0], size=3)
+def slanted_axis(rng, largest=None):
+    """A unit vector away from every coordinate axis and plane, of mixed signs. `largest`: see `half_turn`."""
+    sizes = _with_largest(largest, rng.uniform(0.3, 1.0, size=3))
+    axis = sizes * rng.choice([-1.0, 1.0], size=3)
     return axis / np.linalg.norm(axis)
+
+
+def _with_largest(index, sizes):
+    """The three sizes, rolled until the largest is at `index`."""
+    return sizes if index is None else np.roll(sizes, index - np.argmax(sizes))
 
 
 def vector(rng, length=1.0):
@@ -128,3 +135,13 @@ def either_sign(poses):
         q = orientation(pose)
         result.append(pose_of(position(pose), q * (-1) ** index * np.copysign(1.0, q[3])))
     return result
+
+
+def large_turn(R):
+    """Whether the trace is 0 or less: a turn by 120 degrees or more, where some formulas for a quaternion break."""
+    return np.trace(R) <= 1e-9
+
+
+def x_axis_upright(R):
+    """Whether B's x axis points straight up or down, where roll and yaw cannot be told apart."""
+    return abs(R[2, 0]) > 1.0 - 1e-9

@@ -10,6 +10,7 @@ from .cases import (
     generic_pose,
     generic_transform,
     half_turn,
+    large_turn,
     matrix,
     near_half_turn,
     orientation,
@@ -32,8 +33,9 @@ from .homogeneous_transforms import (
     NO_ORIENTATION,
     ORDERS,
     QUATERNION_ORDER,
+    trace_formula_guarded,
 )
-from .specification import Anything, Case, Exercise, Misconception, together
+from .specification import Case, Exercise, Misconception, together
 
 # --- chain ----------------------------------------------------------------------------------------------------------
 
@@ -103,7 +105,7 @@ CHAIN = Exercise(
             for wrong in (
                 lambda *transforms: chain(*reversed(transforms)),
                 lambda *transforms: chain(*(transforms if len(transforms) < 3 else reversed(transforms))),
-                lambda *transforms: chain(*transforms[2:], *transforms[:2]),
+                lambda *transforms: chain(*reversed(transforms[2:]), *transforms[:2]),  # right for two
             )
         ),
         *(
@@ -273,11 +275,6 @@ def _angles(T):
     return Rotation.from_matrix(T[:3, :3]).as_euler("xyz", suppress_warnings=True)
 
 
-def _breaks_for_large_turns(a_T_b, pose_in_b):
-    right = transform_pose(a_T_b, pose_in_b)
-    return Anything("orientation") if np.trace(matrix(right)[:3, :3]) <= 1e-9 else right
-
-
 THE_WRONG_WAY_ROUND = (
     "The two transforms were multiplied in the wrong order.",
     "Write the frames' names under the product: next to each other, the same frame has to stand twice.",
@@ -411,7 +408,12 @@ TRANSFORM_POSE = Exercise(
             lambda a_T_b, pose_in_b: _as_pose(matrix(pose_in_b) @ np.linalg.inv(a_T_b)),
             *together(FROM_A_TO_B, THE_WRONG_WAY_ROUND),
         ),
-        Misconception("trace-formula-only", _breaks_for_large_turns, *BREAKS_AT_HALF_TURN),
+        Misconception(
+            "trace-formula-only",
+            _with_orientation(lambda T, p: trace_formula_guarded(T @ matrix(p))),
+            *BREAKS_AT_HALF_TURN,
+            varies=lambda T, p: ("orientation",) if large_turn((T @ matrix(p))[:3, :3]) else (),
+        ),
         Misconception(
             "quaternions-added",
             _with_orientation(lambda T, p: _added(quaternion(T[:3, :3]), orientation(p))),

@@ -8,6 +8,7 @@ from scipy.spatial.transform import Rotation
 from .cases import (
     either_sign,
     half_turn,
+    large_turn,
     matrix,
     near_half_turn,
     orientation,
@@ -23,9 +24,10 @@ from .cases import (
     transform,
     vector,
     wide_turn,
+    x_axis_upright,
 )
 from .rotation import TRUNCATED
-from .specification import Anything, Case, Exercise, Misconception, together
+from .specification import Case, Exercise, Misconception, together
 
 EXAMPLE_1 = transform(rotation_about((0, 0, 1), math.pi / 4), (0, 0, 0.5))  # the lab's: turned by 45 degrees and raised
 
@@ -36,8 +38,8 @@ def many_frames(rng):
     return {
         "a frame turned by quarter turns": [(R, vector(rng)) for R in signed_permutations()],
         "a tilted frame": [(R, p), (tilt(rng), p), (R, vector(rng)), (rotation(rng), np.zeros(3))],
-        "a frame turned by more than 120 degrees": [(wide_turn(rng), vector(rng)) for _ in range(3)],
-        "a half turn about a slanted axis": [(half_turn(rng), vector(rng)) for _ in range(3)],
+        "a frame turned by more than 120 degrees": [(wide_turn(rng, axis), vector(rng)) for axis in range(3)],
+        "a half turn about a slanted axis": [(half_turn(rng, axis), vector(rng)) for axis in range(3)],
         "almost a half turn": [(near_half_turn(rng, short), vector(rng)) for short in (1e-2, 3e-3, 1e-3)],
         "Example 1, and turns by a fraction of a degree": [
             (EXAMPLE_1[:3, :3], EXAMPLE_1[:3, 3]),
@@ -296,7 +298,7 @@ def _trace_formula_in_plain_python(matrix):
     return [float(difference) / (4.0 * w) for difference in _off_diagonal(matrix)] + [w]  # raises at a half turn
 
 
-def _trace_formula_guarded(matrix):
+def trace_formula_guarded(matrix):
     return _trace_formula(matrix) if np.trace(matrix[:3, :3]) > -1.0 + 1e-9 else np.array([0.0, 0.0, 0.0, 1.0])
 
 
@@ -332,14 +334,18 @@ def _angle_not_halved(matrix):
     return np.append(axis * np.sin(angle), np.cos(angle))
 
 
-def _breaks_for_large_turns(matrix):
-    """Any formula that is right while the trace is positive, as it is for turns below 120 degrees."""
-    return Anything("orientation") if np.trace(matrix[:3, :3]) <= 1e-9 else transform_to_pose(matrix)
+_transposed = _to_pose_with(orientation=lambda matrix: quaternion(matrix[:3, :3].T))
 
 
-def _breaks_at_gimbal_lock(matrix):
-    """Any way by roll, pitch and yaw that is right while the pitch is not a quarter turn."""
-    return Anything("orientation") if abs(matrix[2, 0]) > 1.0 - 1e-9 else transform_to_pose(matrix)
+def _of_large_turns(matrix):
+    """The part in which formulas differ that are right while the trace is positive."""
+    return ("orientation",) if large_turn(matrix[:3, :3]) else ()
+
+
+def plain_angles(matrix):
+    """Roll, pitch and yaw as textbooks have them, without a thought of gimbal lock."""
+    pitch = math.asin(np.clip(-matrix[2, 0], -1.0, 1.0))
+    return math.atan2(matrix[2, 1], matrix[2, 2]), pitch, math.atan2(matrix[1, 0], matrix[0, 0])
 
 
 def _read_as(order, matrix):
@@ -354,7 +360,7 @@ def _roll_pitch_yaw(matrix):
     return Rotation.from_matrix(matrix[:3, :3]).as_euler("xyz", suppress_warnings=True)
 
 
-def _from_euler(angles, axes="xyz"):
+def from_euler(angles, axes="xyz"):
     return Rotation.from_euler(axes, angles).as_quat()
 
 
@@ -423,7 +429,7 @@ TRANSFORM_TO_POSE = Exercise(
         ),
         Misconception(
             "rotation-transposed",
-            _to_pose_with(orientation=lambda matrix: quaternion(matrix[:3, :3].T)),
+            _transposed,
             *QUATERNION_TURNED,
         ),
         *(
@@ -445,20 +451,24 @@ TRANSFORM_TO_POSE = Exercise(
             )
             for order in ORDERS
         ),
-        Misconception("trace-formula-only", _breaks_for_large_turns, *BREAKS_AT_HALF_TURN),
+        Misconception(
+            "trace-formula-only",
+            _to_pose_with(orientation=trace_formula_guarded),
+            *BREAKS_AT_HALF_TURN,
+            varies=_of_large_turns,
+        ),
+        Misconception(
+            "trace-formula-only;rotation-transposed",
+            _to_pose_with(orientation=lambda matrix: trace_formula_guarded(matrix.T)),
+            *together(BREAKS_AT_HALF_TURN, QUATERNION_TURNED),
+            varies=_of_large_turns,
+        ),
         Misconception(
             "gimbal-lock",
-            _breaks_at_gimbal_lock,
+            _to_pose_with(orientation=lambda matrix: from_euler(plain_angles(matrix))),
             "The orientation goes wrong where B's x axis points straight up or down.",
             "Roll and yaw cannot be told apart there, whatever the formula: a quaternion does not need them.",
-        ),
-        *(
-            Misconception(
-                "trace-formula-only;rotation-transposed",
-                _to_pose_with(orientation=lambda matrix, formula=formula: formula(matrix.T)),
-                *together(BREAKS_AT_HALF_TURN, QUATERNION_TURNED),
-            )
-            for formula in (_trace_formula, _trace_formula_in_plain_python)
+            varies=lambda matrix: ("orientation",) if x_axis_upright(matrix[:3, :3]) else (),
         ),
         Misconception(
             "wrong-sign",
@@ -477,13 +487,13 @@ TRANSFORM_TO_POSE = Exercise(
         ),
         Misconception(
             "degrees-as-radians",
-            _to_pose_with(orientation=lambda matrix: _from_euler(np.degrees(_roll_pitch_yaw(matrix)))),
+            _to_pose_with(orientation=lambda matrix: from_euler(np.degrees(_roll_pitch_yaw(matrix)))),
             "Angles in degrees were taken for radians on the way to the quaternion.",
             "Functions of angles expect radians; a function that goes from matrix to quaternion needs no angles.",
         ),
         Misconception(
             "euler-order",
-            _to_pose_with(orientation=lambda matrix: _from_euler(_roll_pitch_yaw(matrix), "XYZ")),
+            _to_pose_with(orientation=lambda matrix: from_euler(_roll_pitch_yaw(matrix), "XYZ")),
             "Roll, pitch and yaw were put together in another order than they were taken apart.",
             "About fixed axes and about moving ones are two orders; a function from matrix to quaternion needs neither.",
         ),
@@ -492,7 +502,6 @@ TRANSFORM_TO_POSE = Exercise(
             for orientation in (
                 _trace_formula,
                 _trace_formula_in_plain_python,
-                _trace_formula_guarded,
                 _half_turn_by_tolerance,
                 _lengths_with_signs(np.copysign),
                 _lengths_with_signs(lambda sizes, differences: sizes * np.sign(differences)),
@@ -530,7 +539,7 @@ TRANSFORM_TO_POSE = Exercise(
         ),
         *(
             Misconception("yaw-only", _to_pose_with(orientation=orientation), *YAW_ALONE)
-            for orientation in (_yaw_alone, lambda matrix: _from_euler([0.0, 0.0, _roll_pitch_yaw(matrix)[2]]))
+            for orientation in (_yaw_alone, lambda matrix: from_euler([0.0, 0.0, _roll_pitch_yaw(matrix)[2]]))
         ),
         Misconception(
             "yaw-only;angle-not-halved",

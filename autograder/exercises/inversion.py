@@ -6,6 +6,7 @@ from scipy.spatial.transform import Rotation
 from .cases import (
     generic_transform,
     half_turn,
+    large_turn,
     rotation,
     rotation_about,
     signed_permutations,
@@ -17,7 +18,7 @@ from .cases import (
 )
 from .homogeneous_transforms import BOTTOM_ROW, BREAKS_AT_HALF_TURN, ENTRY_BY_ENTRY, YAW_ALONE
 from .rotation import TRUNCATED
-from .specification import Anything, Case, Exercise, Misconception, together
+from .specification import Case, Exercise, Misconception, together
 
 
 def _parts(T):
@@ -76,15 +77,27 @@ def invert_transform_cases(rng):
     return [Case(family, (T,)) for family, transforms in families.items() for T in transforms]
 
 
-def _breaks_for_large_turns(a_T_b):
-    """By axis and angle, or another way that is right while the trace is positive, as it is below 120 degrees."""
-    large = np.trace(a_T_b[:3, :3]) <= 1e-9
-    return Anything("rotation", "translation") if large else invert_transform(a_T_b)
+def _by_axis_and_angle(a_T_b):
+    """Turned back by the angle about the axis, which is 0/0 at a half turn."""
+    R = a_T_b[:3, :3]
+    angle = np.arccos(np.clip((np.trace(R) - 1.0) / 2.0, -1.0, 1.0))
+    difference = np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
+    axis = difference / (2.0 * np.sin(angle)) if angle > 1e-9 else difference
+    back = Rotation.from_rotvec(-angle * axis).as_matrix()
+    return transform(back, -back @ a_T_b[:3, 3])
+
+
+def _angles(T):
+    """Roll, pitch and yaw."""
+    return Rotation.from_matrix(T[:3, :3]).as_euler("xyz", suppress_warnings=True)
+
+
+def _from_angles(angles):
+    return Rotation.from_euler("xyz", angles).as_matrix()
 
 
 def _angles_negated(a_T_b):
-    angles = Rotation.from_matrix(a_T_b[:3, :3]).as_euler("xyz", suppress_warnings=True)
-    R = Rotation.from_euler("xyz", -angles).as_matrix()
+    R = _from_angles(-_angles(a_T_b))
     return transform(R, -R @ a_T_b[:3, 3])
 
 
@@ -109,7 +122,12 @@ INVERT_TRANSFORM = Exercise(
         Misconception("inverse-by-transpose", np.transpose, *INVERSE_BY_TRANSPOSE),
         Misconception("inverse-parts-separately", _parts_separately, *PARTS_SEPARATELY),
         Misconception("rotation-not-inverted", _rotation_kept, *ROTATION_NOT_INVERTED),
-        Misconception("trace-formula-only", _breaks_for_large_turns, *BREAKS_AT_HALF_TURN),
+        Misconception(
+            "trace-formula-only",
+            _by_axis_and_angle,
+            *BREAKS_AT_HALF_TURN,
+            varies=lambda a_T_b: ("rotation", "translation") if large_turn(a_T_b[:3, :3]) else (),
+        ),
         Misconception("integer-truncation", lambda a_T_b: np.trunc(invert_transform(a_T_b)), *TRUNCATED),
         Misconception(
             "yaw-only",
@@ -180,11 +198,14 @@ INVERT_TRANSFORM = Exercise(
             "The translation is missing.",
             "The inverse has to say where A's origin is in B.",
         ),
-        Misconception(
-            "elementwise-inverse",
-            lambda a_T_b: a_T_b**-1,
-            "Every entry was inverted by itself, and 1/0 is infinite.",
-            "`**` works entry by entry in NumPy. Look among the functions of `np.linalg`.",
+        *(
+            Misconception(
+                "elementwise-inverse",
+                wrong,
+                "Every entry was inverted by itself.",
+                "`**` and `/` work entry by entry in NumPy. Look among the functions of `np.linalg`.",
+            )
+            for wrong in (lambda a_T_b: a_T_b**-1, lambda a_T_b: np.divide(1, a_T_b, np.zeros((4, 4)), where=a_T_b != 0))
         ),
     ),
 )
@@ -285,6 +306,14 @@ RELATIVE_TRANSFORM = Exercise(
             ),
             "The translation was turned by B's rotation, which is not inverted.",
             "The arrow from B to C is known along A's axes: which rotation leads from these to B's?",
+        ),
+        Misconception(
+            "euler-angles-subtracted",
+            lambda a_T_b, a_T_c: transform(
+                _from_angles(_angles(a_T_c) - _angles(a_T_b)), relative_transform(a_T_b, a_T_c)[:3, 3]
+            ),
+            "Roll, pitch and yaw of the two rotations were subtracted.",
+            "Angles may be subtracted when both turns have one axis. What undoes a rotation is its inverse.",
         ),
         Misconception(
             "wrong-sign",

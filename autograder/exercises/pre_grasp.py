@@ -1,12 +1,14 @@
 """The exercises of notebook 5: poses that are given relative to an object."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from .cases import (
     either_sign,
+    large_turn,
     matrix,
     near_half_turn,
     orientation,
@@ -21,9 +23,17 @@ from .cases import (
     tilt,
     vector,
     wide_turn,
+    x_axis_upright,
 )
-from .homogeneous_transforms import BREAKS_AT_HALF_TURN, NO_ORIENTATION, ORDERS
-from .specification import Anything, Case, Exercise, Misconception, together
+from .homogeneous_transforms import (
+    BREAKS_AT_HALF_TURN,
+    NO_ORIENTATION,
+    ORDERS,
+    from_euler,
+    plain_angles,
+    trace_formula_guarded,
+)
+from .specification import Case, Exercise, Misconception, together
 
 LAB_OBJECT = pose_of((0.6, -0.1, 0.7), (0.0, 0.0, 0.38268343, 0.92387953))  # the lab's, as printed there
 
@@ -43,11 +53,11 @@ def _upright(rng):
 
 
 def _along_axes(rng):
-    """Twelve of the 24, which is plenty here and keeps the public key small; one of them a quarter turn about y."""
-    along_axes = signed_permutations()
-    nose_down = next(index for index, R in enumerate(along_axes) if R[2, 0] == -1.0 and np.trace(R) == 1.0)
-    chosen = [nose_down, *(index for index in rng.permutation(24) if index != nose_down)][:12]
-    return either_sign([pose(along_axes[index], vector(rng)) for index in chosen])
+    """Twelve of the 24, which is plenty here and keeps the public key small; four of them with the x axis upright."""
+    along_axes = rng.permutation(signed_permutations())
+    upright = sorted(filter(x_axis_upright, along_axes), key=lambda R: -np.trace(R))  # first a quarter turn about y
+    others = [R for R in along_axes if not x_axis_upright(R)]
+    return either_sign([pose(R, vector(rng)) for R in (*upright[:4], *others[:8])])
 
 
 def _tilted(rng):
@@ -112,13 +122,6 @@ def _yaw(angle):
     return Rotation.from_euler("z", angle).as_matrix()
 
 
-def _yaw_of_matrix(object_pose, offset):
-    R = matrix(object_pose)[:3, :3]
-    if _x_axis_upright(R):
-        return Anything("position")  # there is no yaw; what comes is a matter of rounding
-    return _moved(lambda p, R, offset: p + _yaw(math.atan2(R[1, 0], R[0, 0])) @ offset)(object_pose, offset)
-
-
 def _yaw_of_quaternion(object_pose, offset):
     x, y, z, w = orientation(object_pose)
     return pose_of(position(object_pose) + _yaw(2.0 * math.atan2(z, w)) @ offset, (x, y, z, w))
@@ -148,22 +151,9 @@ def _angles_reversed(R):
     return Rotation.from_euler("xyz", angles[::-1]).as_matrix()
 
 
-def _breaks(where):
-    """Orientations that go through a matrix, and come back wrong where `where(R)` says."""
-
-    def wrong(object_pose, offset):
-        right = waypoint(object_pose, offset)
-        return Anything("orientation") if where(matrix(object_pose)[:3, :3]) else right
-
-    return wrong
-
-
-def _large_turn(R):
-    return np.trace(R) <= 1e-9
-
-
-def _x_axis_upright(R):
-    return abs(R[2, 0]) > 1.0 - 1e-9
+def _orientation_where(where):
+    """The part in which ways by a matrix differ, for objects turned in a way that `where(R)` is true of."""
+    return lambda object_pose, offset: ("orientation",) if where(matrix(object_pose)[:3, :3]) else ()
 
 
 def _turned_twice(object_pose):
@@ -192,103 +182,124 @@ READ_IN_ANOTHER_ORDER = (
     "Which comes first in `tf.transformations`, and which last: is w at the front or at the end?",
 )
 
-SHARED = [
-    ("base-frame-offset", _moved(lambda p, R, offset: p + offset), *IN_THE_BASE),
-    ("wrong-sign", _moved(lambda p, R, offset: p - R @ offset), *OPPOSITE_SIDE),
-    (
-        "base-frame-offset;wrong-sign",
-        _moved(lambda p, R, offset: p - offset),
-        *together(IN_THE_BASE, OPPOSITE_SIDE),
-    ),
-    ("rotation-transposed", _moved(lambda p, R, offset: p + R.T @ offset), *TURNED_BACK),
-    (
-        "rotation-transposed;wrong-sign",
-        _moved(lambda p, R, offset: p - R.T @ offset),
-        *together(TURNED_BACK, OPPOSITE_SIDE),
-    ),
-    ("trace-formula-only", _breaks(_large_turn), *BREAKS_AT_HALF_TURN),
-    (
-        "gimbal-lock",
-        _breaks(_x_axis_upright),
-        "The orientation goes wrong where the object's x axis points straight up or down.",
-        "Roll and yaw cannot be told apart there, whatever the formula. Copy the object's quaternion instead.",
-    ),
-    (
-        "position-missing",
-        _moved(lambda p, R, offset: R @ offset),
-        "The answer is the offset alone, seen from the base's origin.",
-        "Where does the object itself come in?",
-    ),
-    (
-        "offset-missing",
-        _moved(lambda p, R, offset: p),
-        "The answer is at the object itself: the offset is not in it.",
-        "Move along the object's axes, starting where the object is.",
-    ),
-    (
-        "order-reversed",
-        _moved(lambda p, R, offset: R @ (p + offset)),
-        "The object's own position was turned too.",
-        "The position is already given in the base frame; only the offset is given in the object's.",
-    ),
-    (
-        "orientation-missing",
-        _moved(_right_position, lambda object_pose: (0, 0, 0, 0)),
-        *NO_ORIENTATION,
-    ),
-    (
-        "orientation-identity",
-        _moved(_right_position, lambda object_pose: (0, 0, 0, 1)),
-        "The orientation is 0, 0, 0, 1: aligned with the base, not with the object.",
-        "Relative to the object the answer is not turned; relative to the base the object itself is.",
-    ),
-    (
-        "rotation-applied-twice",
-        _moved(_right_position, _turned_twice),
-        "The object's rotation is in the orientation twice.",
-        "How is the answer turned relative to the object, before you go to the base frame?",
-    ),
-    (
-        "yaw-only",
-        _yaw_of_matrix,
-        *UPRIGHT_ONLY,
-    ),
-    ("yaw-only", _yaw_of_quaternion, *UPRIGHT_ONLY),
-    *(
-        ("quaternion-order", wrong, *READ_IN_ANOTHER_ORDER)
-        for order in ORDERS
-        for wrong in (_with_quaternion_read(order, copied=True), _with_quaternion_read(order, copied=False))
-    ),
-    *(
+_back_to_front = _with_quaternion_read(ORDERS[2], copied=True)
+
+SHARED = tuple(
+    Misconception(*shared)
+    for shared in (
+        ("base-frame-offset", _moved(lambda p, R, offset: p + offset), *IN_THE_BASE),
+        ("wrong-sign", _moved(lambda p, R, offset: p - R @ offset), *OPPOSITE_SIDE),
         (
-            "quaternion-order",
-            _with_quaternion_written(order),
-            "The numbers of the quaternion were written in another order than ROS's.",
-            READ_IN_ANOTHER_ORDER[1],
-        )
-        for order in ORDERS
-    ),
-    *(
+            "base-frame-offset;wrong-sign",
+            _moved(lambda p, R, offset: p - offset),
+            *together(IN_THE_BASE, OPPOSITE_SIDE),
+        ),
+        ("rotation-transposed", _moved(lambda p, R, offset: p + R.T @ offset), *TURNED_BACK),
         (
-            "quaternion-order;wrong-sign",
-            lambda object_pose, offset, wrong=wrong: wrong(object_pose, -np.asarray(offset)),
-            *together(READ_IN_ANOTHER_ORDER, OPPOSITE_SIDE),
-        )
-        for order in ORDERS
-        for wrong in (_with_quaternion_read(order, copied=True), _with_quaternion_read(order, copied=False))
-    ),
-]
+            "rotation-transposed;wrong-sign",
+            _moved(lambda p, R, offset: p - R.T @ offset),
+            *together(TURNED_BACK, OPPOSITE_SIDE),
+        ),
+        (
+            "trace-formula-only",
+            _moved(_right_position, lambda object_pose: trace_formula_guarded(matrix(object_pose))),
+            *BREAKS_AT_HALF_TURN,
+            _orientation_where(large_turn),
+        ),
+        (
+            "gimbal-lock",
+            _moved(_right_position, lambda object_pose: from_euler(plain_angles(matrix(object_pose)))),
+            "The orientation goes wrong where the object's x axis points straight up or down.",
+            "Roll and yaw cannot be told apart there, whatever the formula. Copy the object's quaternion instead.",
+            _orientation_where(x_axis_upright),
+        ),
+        (
+            "position-missing",
+            _moved(lambda p, R, offset: R @ offset),
+            "The answer is the offset alone, seen from the base's origin.",
+            "Where does the object itself come in?",
+        ),
+        (
+            "offset-missing",
+            _moved(lambda p, R, offset: p),
+            "The answer is at the object itself: the offset is not in it.",
+            "Move along the object's axes, starting where the object is.",
+        ),
+        (
+            "order-reversed",
+            _moved(lambda p, R, offset: R @ (p + offset)),
+            "The object's own position was turned too.",
+            "The position is already given in the base frame; only the offset is given in the object's.",
+        ),
+        (
+            "orientation-missing",
+            _moved(_right_position, lambda object_pose: (0, 0, 0, 0)),
+            *NO_ORIENTATION,
+        ),
+        (
+            "orientation-identity",
+            _moved(_right_position, lambda object_pose: (0, 0, 0, 1)),
+            "The orientation is 0, 0, 0, 1: aligned with the base, not with the object.",
+            "Relative to the object the answer is not turned; relative to the base the object itself is.",
+        ),
+        (
+            "rotation-applied-twice",
+            _moved(_right_position, _turned_twice),
+            "The object's rotation is in the orientation twice.",
+            "How is the answer turned relative to the object, before you go to the base frame?",
+        ),
+        (
+            "yaw-only",
+            _moved(lambda p, R, offset: p + _yaw(math.atan2(R[1, 0], R[0, 0])) @ offset),
+            *UPRIGHT_ONLY,
+            lambda object_pose, offset: ("position",) if x_axis_upright(matrix(object_pose)[:3, :3]) else (),  # there is no yaw
+        ),
+        ("yaw-only", _yaw_of_quaternion, *UPRIGHT_ONLY),
+        *(
+            ("quaternion-order", wrong, *READ_IN_ANOTHER_ORDER)
+            for wrong in (
+                *(_with_quaternion_read(order, copied=False) for order in ORDERS),
+                *(_with_quaternion_read(order, copied=True) for order in ORDERS[:2]),
+                _back_to_front,
+            )
+        ),
+        *(
+            (
+                "quaternion-order",
+                _with_quaternion_written(order),
+                "The numbers of the quaternion were written in another order than ROS's.",
+                READ_IN_ANOTHER_ORDER[1],
+            )
+            for order in ORDERS
+        ),
+        *(
+            (
+                "quaternion-order;wrong-sign",
+                lambda object_pose, offset, wrong=wrong: wrong(object_pose, -np.asarray(offset)),
+                *together(READ_IN_ANOTHER_ORDER, OPPOSITE_SIDE),
+            )
+            for order in ORDERS
+            for wrong in (_with_quaternion_read(order, copied=True), _with_quaternion_read(order, copied=False))
+        ),
+    )
+)
 
 
-def _behind(wrong):
-    """The wrong `waypoint` as a wrong `pre_grasp`."""
-    return lambda object_pose, distance=0.1: wrong(object_pose, (-distance, 0.0, 0.0))
+def _behind(of_offset):
+    """What does something with an object's pose and an offset, as something with the pose and a distance."""
+    return lambda object_pose, distance=0.1: of_offset(object_pose, (-distance, 0.0, 0.0))
 
 
 ALWAYS_TEN = (
     "The answer is always 10 cm away from the object, whatever distance is asked for.",
     "Your function has a second argument; 0.1 is only what it is when nobody gives it.",
 )
+
+# With an offset along x alone, a quaternion that is read back to front gives what a pitch of the wrong sign gives.
+UPSIDE_DOWN = {
+    "says": "The approach is upside down: the quaternion was read back to front, or a pitch has the wrong sign.",
+    "hint": "For an object that points straight down, where is the gripper before it grasps: above, or below?",
+}
 
 PRE_GRASP = Exercise(
     name="pre_grasp",
@@ -299,7 +310,15 @@ PRE_GRASP = Exercise(
     credit={"position": 0.5},
     weights={"a tilted object": 2},
     misconceptions=(
-        *(Misconception(identifier, _behind(wrong), says, hint) for identifier, wrong, says, hint in SHARED),
+        *(
+            replace(
+                shared,
+                wrong=_behind(shared.wrong),
+                varies=_behind(shared.varies),
+                **(UPSIDE_DOWN if shared.wrong is _back_to_front else {}),
+            )
+            for shared in SHARED
+        ),
         Misconception(
             "distance-ignored", lambda object_pose, distance=0.1: pre_grasp(object_pose), *ALWAYS_TEN
         ),
@@ -355,7 +374,7 @@ WAYPOINT = Exercise(
     credit={"position": 0.5},
     weights={"a tilted object": 2},
     misconceptions=(
-        *(Misconception(identifier, wrong, says, hint) for identifier, wrong, says, hint in SHARED),
+        *SHARED,
         Misconception(
             "wrong-axis",
             _moved(lambda p, R, offset: p + R[:, 0] * offset[0]),

@@ -29,10 +29,6 @@ def about_z_cases(rng):
     return [Case(family, (angle,)) for family, angles in families.items() for angle in angles]
 
 
-def _plane(cosine, sine):
-    return np.array([[cosine, -sine], [sine, cosine]])
-
-
 def _z_axis_lost(degrees):
     R = rotation_about_z(degrees)
     R[2, 2] = 0.0
@@ -82,9 +78,12 @@ ABOUT_Z = Exercise(
             lambda degrees: Rotation.from_euler("z", -degrees).as_matrix(),
             *together(IN_RADIANS, THE_OTHER_WAY_ROUND),
         ),
-        *(
-            Misconception("integer-truncation", wrong, *TRUNCATED)
-            for wrong in (lambda degrees: rotation_about_z(int(degrees)), lambda degrees: np.trunc(rotation_about_z(degrees)))
+        Misconception("integer-truncation", lambda degrees: rotation_about_z(int(degrees)), *TRUNCATED),
+        Misconception(
+            "integer-truncation",
+            lambda degrees: np.trunc(rotation_about_z(degrees)) * [[1, 1, 0], [1, 1, 0], [0, 0, 0]] + np.diag([0, 0, 1]),
+            *TRUNCATED,
+            varies=lambda degrees: ("rotation",) if degrees % 90 == 0 else (),  # a sine of 1, or a little less and so 0
         ),
         Misconception(
             "integer-truncation;rotation-transposed",

@@ -34,16 +34,8 @@ class Misconception:
     wrong: Callable
     says: str  # what the answer shows
     hint: str  # helps without giving the solution away
-
-
-class Anything:
-    """Returned by a wrong implementation where it breaks down: these parts of its answer may be anything.
-
-    For misconceptions that are a kind of formula rather than one formula, and where the answer is a matter of rounding.
-    """
-
-    def __init__(self, *parts):
-        self.parts = parts
+    # From the arguments to the parts of the answer that hang on how exactly it is computed; others may answer otherwise.
+    varies: Callable = lambda *args, **kwargs: ()
 
 
 def together(*messages):
@@ -98,7 +90,7 @@ def _case(exercise, case):
     args = [_rounded(codec.encode(arg)) for arg in case.args]
     kwargs = {name: _rounded(codec.encode(arg)) for name, arg in case.kwargs.items()}
     expected = _answer(exercise.reference, args, kwargs)
-    wrong = [_answer(misconception.wrong, args, kwargs) for misconception in exercise.misconceptions]
+    wrong = [_wrong_answer(misconception, args, kwargs) for misconception in exercise.misconceptions]
     return {
         "family": case.family,
         "args": args,
@@ -110,6 +102,13 @@ def _case(exercise, case):
     }
 
 
+def _wrong_answer(misconception, args, kwargs):
+    open_parts = misconception.varies(
+        *(codec.decode(arg) for arg in args), **{name: codec.decode(arg) for name, arg in kwargs.items()}
+    )
+    return {"any": list(open_parts)} if open_parts else _answer(misconception.wrong, args, kwargs)
+
+
 def _right(returns, answer, expected):
     special = isinstance(answer, dict) and answer.keys() & {"any", "raises"}
     return not special and same(returns, answer, expected)
@@ -119,8 +118,7 @@ def _answer(function, args, kwargs):
     args, kwargs = [codec.decode(arg) for arg in args], {name: codec.decode(arg) for name, arg in kwargs.items()}
     with np.errstate(all="ignore"):  # wrong implementations divide by zero; that is their point
         try:
-            answer = function(*args, **kwargs)
-            return {"any": list(answer.parts)} if isinstance(answer, Anything) else _rounded(codec.encode(answer))
+            return _rounded(codec.encode(function(*args, **kwargs)))
         except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError, np.linalg.LinAlgError) as error:
             return {"raises": type(error).__name__}
 

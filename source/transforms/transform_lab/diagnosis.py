@@ -45,6 +45,7 @@ GENERAL = {
         "Return all the digits there are; round when you print.",
     ),
 }
+ARITHMETIC = ("ZeroDivisionError", "ValueError", "FloatingPointError", "OverflowError", "LinAlgError")
 TRY_BY_HAND = "Call it yourself, in a cell of its own, with arguments of the kind that the docstring describes."
 PRINT_IS_NOT_RETURN = "`print` shows a value to you; only `return` hands it to whoever called the function."
 ADVICE = (  # for errors whose message says little to a beginner: (pattern, what helps)
@@ -86,9 +87,9 @@ def constant(replies):
 def _explain(exercise, replies, outcomes):
     if all(outcome.answered for outcome in outcomes):
         return Diagnosis()
-    fitting = [index for index in range(len(exercise["misconceptions"])) if _explains(index, exercise, replies, outcomes)]
-    exact = [index for index in fitting if not any(_open_parts(case["wrong"][index]) for case in exercise["cases"])]
-    found = _one_of(exercise["misconceptions"][index] for index in exact or fitting)
+    fits = [_fit(index, exercise, replies, outcomes) for index in range(len(exercise["misconceptions"]))]
+    best = [misconception for misconception, fit in zip(exercise["misconceptions"], fits) if fit == max(fits) > 0]
+    found = _one_of(best)
     if found is not None:
         return found
     problems = [outcome.problem for outcome in outcomes if outcome.problem]
@@ -99,9 +100,8 @@ def _explain(exercise, replies, outcomes):
     return _part_by_part(exercise, outcomes)
 
 
-def _one_of(misconceptions):
+def _one_of(fitting):
     """The Diagnosis that these misconceptions share; None without any, and when they have different names."""
-    fitting = list(misconceptions)
     if len({misconception["id"] for misconception in fitting}) != 1:
         return None
     return Diagnosis(tuple(fitting[0]["id"].split(";")), fitting[0]["says"], fitting[0]["hint"])
@@ -114,28 +114,41 @@ def _together(found):
     return Diagnosis(ids, says, hint)
 
 
-def _explains(index, exercise, replies, outcomes):
-    """Whether the answers equal this misconception's where it differs from the right one, and are right elsewhere."""
-    differs = False
+def _fit(index, exercise, replies, outcomes):
+    """How well a misconception explains the answers: 0 not, 2 exactly, and between when some of its answers are open.
+
+    Exactly: they equal its own wherever it differs from the right one, and are right elsewhere. When its answers are
+    open in some cases, and all else is so, it is the share of these cases that are wrong; a single one proves nothing.
+    """
+    differs, open_cases, wrong_there = False, 0, 0
     for case, reply, outcome in zip(exercise["cases"], replies, outcomes):
         wrong = case["wrong"][index]
         if wrong is None:
             if not outcome.answered:
-                return False
-            continue
-        differs = True
-        if open_parts := _open_parts(wrong):
-            closed = set(PARTS[exercise["returns"]]) - open_parts
-            if outcome.got is not None and not closed <= outcome.parts:
-                return False
-        elif outcome.answered:
-            return False
-        elif raises := error_of(wrong):
-            if reply.outcome != "raised" or reply.error.partition(":")[0] != raises:
-                return False
-        elif reply.outcome != "returned" or not same(exercise["returns"], reply.value, wrong):
-            return False
-    return differs
+                return 0
+        elif open_parts := _open_parts(wrong):
+            open_cases, wrong_there = open_cases + 1, wrong_there + (not outcome.answered)
+            if not _broke_down(outcome) and not set(PARTS[exercise["returns"]]) - open_parts <= outcome.parts:
+                return 0
+        else:
+            differs = True
+            if outcome.answered or not _equals(wrong, exercise["returns"], reply):
+                return 0
+    if not open_cases:
+        return 2 if differs else 0
+    return (1 if differs else wrong_there / open_cases) if differs or wrong_there > 1 else 0
+
+
+def _equals(wrong, returns, reply):
+    if raises := error_of(wrong):
+        return reply.outcome == "raised" and reply.error.partition(":")[0] == raises
+    return reply.outcome == "returned" and same(returns, reply.value, wrong)
+
+
+def _broke_down(outcome):
+    """Whether a formula came to its end: no number came out, or arithmetic raised an error."""
+    identifier, what = outcome.problem or (None, "")
+    return identifier == "not-finite" or (identifier == "" and what.partition(":")[0] in ARITHMETIC)
 
 
 def error_of(wrong):
@@ -188,7 +201,7 @@ def _part_by_part(exercise, outcomes):
 
 def _partial_explanations(exercise, outcomes):
     """{parts that they touch: [misconceptions that explain the answers in these parts]}"""
-    parts, found = PARTS[exercise["returns"]], {}
+    parts, found, loosely = PARTS[exercise["returns"]], {}, {}
     expected = [parts_of(exercise["returns"], codec.decode(case["expected"])) for case in exercise["cases"]]
     for index, misconception in enumerate(exercise["misconceptions"]):
         wrong = _parts_of_misconception(index, exercise, expected)
@@ -203,14 +216,15 @@ def _partial_explanations(exercise, outcomes):
             for outcome, answer in zip(outcomes, wrong)
             for part in touched
         ):
-            found.setdefault(touched, []).append(misconception)
+            exact = all(part is not None for answer in wrong for part in answer.values())
+            (found if exact else loosely).setdefault(touched, []).append(misconception)
     for part in parts:
         pairs = [(outcome.got[part], right[part]) for outcome, right in zip(outcomes, expected)]
         for identifier, fits in (("not-normalised", _not_normalised), ("rounded", _rounded)):
             if any(part not in outcome.parts for outcome in outcomes) and fits(part, pairs):
                 says, hint = GENERAL[identifier]
                 found.setdefault(frozenset([part]), []).append({"id": identifier, "says": says, "hint": hint})
-    return found
+    return loosely | found
 
 
 def _parts_of_misconception(index, exercise, expected):
