@@ -1,8 +1,8 @@
 """How long a student waits for `check`, and the judge for a notebook: `python tests/benchmark_check.py`.
 
-Prints medians in milliseconds on this machine, per exercise: `check` on a right solution (goal: under 50 after the first
-call), `check` on a wrong one with its picture, and per notebook what judging all hidden cases costs the grader on top of
-the student's own time (goal: under 100).
+Prints medians in milliseconds on this machine, per exercise: `check` on a right solution (goal: under 50 after the
+first call), `check` on a wrong one with its picture, and per notebook what judging all hidden cases costs the grader
+on top of the student's own time (goal: under 100).
 """
 
 import contextlib

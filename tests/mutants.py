@@ -1,4 +1,4 @@
-"""Every syntactic mutant of a function: one operator, constant, index, sign, name of a field, argument or statement changed.
+"""Every syntactic mutant of a function: one operator, constant, index, sign, field, argument or statement changed.
 
 Mutation testing asks of a set of cases what Clegg, McMinn and Fraser (ICSE SEET 2021) ask of a grading test suite: is
 there a wrong program that it takes for right?
@@ -51,7 +51,10 @@ def _mutants(function, package):
             for index in range(len(statements)) if len(statements) > 1 else ():
                 dropped = statements.pop(index)
                 try:
-                    yield f"{definition.name}: without {ast.unparse(dropped)}", _made(tree, namespace, function.__name__)
+                    yield (
+                        f"{definition.name}: without {ast.unparse(dropped)}",
+                        _made(tree, namespace, function.__name__),
+                    )
                 finally:
                     statements.insert(index, dropped)
 

@@ -5,12 +5,13 @@ For every exercise and for every one of SEEDS, which the hidden cases are drawn 
 - every misconception is caught, and named by its own id alone
 - every syntactic mutant of the reference, and of the solution in the notebook, is caught, or is listed below as
   equivalent with the reason
-- every right solution (`solutions/right.py`, and forms of answers that come of the reference) earns full points
+- every right solution of `solutions/` is accepted, and every wrong one refused
 
 `python -m pytest tests -k adequacy -s` prints the table.
 """
 
 import linecache
+import logging
 import warnings
 from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
@@ -24,7 +25,7 @@ from conftest import ROOT
 from mutants import mutants
 from rich.console import Console
 from rich.table import Table
-from solutions.right import RIGHT
+from solutions.right import NAMES, RIGHT
 from solutions.wrong import WRONG
 from transform_lab.check import call
 from transform_lab.verdict import compare, examine
@@ -139,7 +140,11 @@ def test_adequacy():
         table.add_row(each.exercise, str(each.misconceptions), f"{each.caught} / {each.equivalent}", str(each.wrong),
                       str(each.right))  # fmt: skip
     table.add_section()
-    total = {name: sum(getattr(each, name) for each in found) for name in vars(found[0]) if name not in ("exercise", "faults")}
+    total = {
+        name: sum(getattr(each, name) for each in found)
+        for name in vars(found[0])
+        if name not in ("exercise", "faults")
+    }
     table.add_row("all", str(total["misconceptions"]), f"{total['caught']} / {total['equivalent']}",
                   str(total["wrong"]), str(total["right"]))  # fmt: skip
     console = Console(width=120)
@@ -152,14 +157,15 @@ def test_adequacy():
 def measure(name):
     """The Adequacy of one exercise's cases."""
     warnings.simplefilter("ignore")
+    logging.disable()  # students print, warn and log
     exercise, found = EXERCISES[name], Adequacy(name)
     changed = mutants(exercise.reference, "autograder.exercises")
     changed += [(f"notebook: {what}", mutant) for what, mutant in mutants(notebook_solution(name))]
     reasons = EQUIVALENT | EQUIVALENT_HERE.get(name, {})
     listed = {what for changes in reasons.values() for what in changes}
     equivalent = {what for what, _ in changed if {what, what.removeprefix("notebook: ")} & listed}
-    right = [function for of, function in RIGHT if of == name]
-    wrong = [function for of, _, function in WRONG if of == name]
+    right = {label: function for (of, function), label in zip(RIGHT, NAMES) if of == name}
+    wrong = {function.__name__: function for of, _, function in WRONG if of == name}
     found.misconceptions, found.right, found.wrong = len(exercise.misconceptions), len(right), len(wrong)
     found.equivalent, found.caught = len(equivalent), len(changed) - len(equivalent)
     with np.errstate(all="ignore"):
@@ -169,12 +175,10 @@ def measure(name):
                 verdict = examine(name, cases, partial(call, misconception.wrong))
                 if verdict.right or verdict.misconceptions != tuple(misconception.id.split(";")):
                     found.faults.append(f"{name}: {misconception.id} is called {verdict.misconceptions}")
-            for function in right:
-                if not passes(function, cases):
-                    found.faults.append(f"{name}: right, and refused: {function}")
-            for function in wrong:
-                if passes(function, cases):
-                    found.faults.append(f"{name}: wrong, and accepted: {function}")
+            found.faults += [
+                f"{name}: right, and refused: {label}" for label in right if not passes(right[label], cases)
+            ]
+            found.faults += [f"{name}: wrong, and accepted: {label}" for label in wrong if passes(wrong[label], cases)]
             for what, mutant in changed:
                 if (mutant is not None and passes(mutant, cases)) != (what in equivalent):
                     kind = "equivalent, and caught" if what in equivalent else "mutant, and missed"

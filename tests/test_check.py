@@ -4,7 +4,9 @@ import re
 
 import numpy as np
 import pytest
-from transform_lab import Point, Pose, Quaternion, check, once_done, panel, tft
+from IPython.core.interactiveshell import InteractiveShell
+from IPython.utils.capture import capture_output
+from transform_lab import Point, Pose, Quaternion, check, codec, comparison, once_done, panel, tft
 from transform_lab.check import CheckFailed, call
 from transform_lab.verdict import Reply, Verdict, examine
 
@@ -14,6 +16,13 @@ from autograder.exercises import EXERCISES
 @pytest.fixture
 def said(capsys):
     return lambda: capsys.readouterr().out
+
+
+@pytest.fixture
+def shell():
+    """IPython, as a notebook has it."""
+    yield InteractiveShell.instance()
+    InteractiveShell.clear_instance()
 
 
 def to_pose(matrix):
@@ -49,10 +58,12 @@ def test_a_wrong_answer_shows_what_is_right_what_was_expected_and_the_misconcept
     text, line = failing("transform_to_pose", w_first, said)
     assert line.startswith("transform_to_pose: not right yet (position right, orientation ")
     assert "in another order than ROS's" in text
-    for label in ("  matrix:", "expected", "yours", "position", "orientation", "x ", "w ", "2 of 4 points"):
+    for label in ("  matrix", "2 of 4 points"):
         assert label in text
-    assert "distance between the positions: 0 m" in text
-    assert "angle between the orientations: " in text and " degrees" in text
+    assert re.search(r"position     expected  x \S+   y \S+   z \S+\n +yours     x \S+   y \S+   z \S+   right", text)
+    assert re.search(
+        r"orientation  expected  x \S+   y \S+   z \S+   w \S+\n +yours .*w \S+   off by \d+ degrees", text
+    )
 
 
 def test_small_readable_numbers(said):
@@ -96,8 +107,22 @@ def test_an_error_of_the_students_is_shown_in_one_line(said):
 
     text, _ = failing("transform_to_pose", wrong, said)
     assert "NameError: name 'undefined_name' is not defined" in text
+    assert ", in your line" not in text  # this file is no cell
     assert "Each notebook starts empty" in text
     assert "Traceback" not in text
+
+
+def test_an_error_is_shown_with_the_students_own_line(shell):
+    with capture_output() as shown:
+        shell.run_cell(
+            "from transform_lab import check\n"
+            "def transform_point(a_T_b, p_in_b):\n"
+            "    point = a_T_b @ p_in_b  # a comment\n"
+            "    return point[:3]\n"
+            "check('transform_point', transform_point)"
+        )
+    text = next(output.data["text/plain"] for output in shown.outputs)
+    assert "(size 3 is different from 4), in your line 3: `point = a_T_b @ p_in_b  # a comment`" in text
 
 
 def test_errors_are_counted_whatever_their_message(said):
@@ -111,7 +136,7 @@ def test_errors_are_counted_whatever_their_message(said):
         return wrong(matrix) if matrix[0, 0] < -0.5 else to_pose(matrix)
 
     text, _ = failing("transform_to_pose", wrong_sometimes, said)
-    assert re.search(r"raised an error in \d+ of 41 cases", text)
+    assert re.search(r"raised an error in \d+ of 42 cases", text)
 
 
 def test_the_forgotten_fourth_coordinate_is_explained(said):
@@ -147,8 +172,104 @@ def test_an_exercise_without_arguments_does_not_show_its_answer(said):
 
 def test_answers_that_look_alike_show_how_far_apart_they_are(said):
     rotation = EXERCISES["rotation_about_z"].reference
+    text, _ = failing("rotation_about_z", lambda degrees: rotation(degrees + 1e-3), said)
+    assert "rotation: off by 0.001 degrees" in text
     text, _ = failing("rotation_about_z", lambda degrees: rotation(degrees).round(4), said)
-    assert re.search(r"largest difference between two numbers: [1-5]e-05", text)
+    assert "Your answer is right, but rounded." in text
+
+
+@pytest.mark.parametrize(
+    "name, wrong, words",
+    [
+        (
+            "rotation_from_axes",
+            lambda x, y: np.column_stack((x, y, np.cross(y, x))),
+            "a mirror image: the axes are left",
+        ),
+        ("rotation_from_axes", lambda x, y: np.column_stack((x, y, x + y)), "no rotation: its columns are not all of"),
+        ("make_transform", lambda R, p: np.vstack((np.column_stack((R, p)), [0, 0, 0, 0])), "bottom row: wrong"),
+        (
+            "make_transform",
+            lambda R, p: np.vstack((np.column_stack((R, 0 * p)), [0, 0, 0, 1])),
+            "translation: off by 1.",
+        ),
+        ("transform_point", lambda T, p: T[:3, 3], "   off by "),
+        ("transform_to_pose", lambda T: Pose(Point(*T[:3, 3]), Quaternion()), "no orientation: all four numbers are 0"),
+        ("transform_to_pose", lambda T: Pose(Point(*T[:3, 3]), Quaternion(0, 0, 0, 2)), ", and of length 2"),
+        ("is_rotation", lambda R: True, "  expected  False\n  yours     True"),
+        ("chain", lambda *transforms: transforms[0], "transforms[1]"),
+        ("is_rotation", lambda R: abs(np.linalg.det(R) - 1) < 1e-6, "not right yet (right in "),
+    ],
+)
+def test_how_far_an_answer_is_off(said, name, wrong, words):
+    text, line = failing(name, wrong, said)
+    assert words in text
+
+
+# --- the picture ----------------------------------------------------------------------------------------------------
+
+
+def pictured(name, wrong):
+    verdict = examine(name, public(name), lambda args, kwargs: call(wrong, args, kwargs))
+    return comparison.scene(verdict)
+
+
+@pytest.mark.parametrize(
+    "name, wrong, frames, points",
+    [
+        ("rotation_about_z", lambda degrees: np.eye(3), {"b (expected)", "b (yours)"}, set()),
+        ("invert_transform", lambda T: T, {"a (expected)", "a (yours)"}, set()),
+        ("transform_point", lambda T, p: p, {"b"}, {"p (expected)", "p (yours)"}),
+        ("relative_transform", lambda B, C: C, {"a", "c (expected)", "c (yours)"}, set()),
+        ("object_in_gripper", lambda C, G, p: p, {"base", "camera"}, {"p (expected)", "p (yours)"}),
+        ("pre_grasp", lambda pose, distance=0.1: pose, {"object", "pre_grasp (expected)", "pre_grasp (yours)"}, set()),
+        ("chain", lambda *T: T[0] if len(T) < 4 else np.eye(4), {"last (expected)", "last (yours)", "link 1"}, set()),
+        ("hand_transform", lambda: np.eye(4), {"b (yours)"}, set()),  # what is expected is the solution
+    ],
+)
+def test_the_failing_case_is_drawn_as_frames(name, wrong, frames, points):
+    words = pictured(name, wrong).description()
+    assert set(re.findall(r"^frame (.+) in ", words, re.M)) == frames
+    assert set(re.findall(r"^point (.+) in ", words, re.M)) == points
+
+
+def test_the_expected_frame_is_where_it_should_be():
+    scene = pictured("object_in_gripper", lambda base_T_camera, base_T_gripper, p: p)
+    case = public("object_in_gripper")["cases"][0]
+    base_T_camera, base_T_gripper, p = map(codec.decode, case["args"])
+    assert np.allclose(scene.lookup("base", "camera"), base_T_camera)
+    assert np.allclose(scene.lookup("base", "gripper"), base_T_gripper)
+
+
+def test_columns_that_are_no_axes_are_drawn_as_arrows():
+    words = pictured("rotation_from_axes", lambda x, y: np.column_stack((x, y, x + y))).description()
+    assert set(re.findall(r"^arrow (.+) in ", words, re.M)) == {"your x", "your y", "your z"}
+
+
+@pytest.mark.parametrize(
+    "name, wrong",
+    [
+        ("is_rotation", lambda R: True),
+        ("transform_to_pose", lambda matrix: None),
+        ("transform_to_pose", lambda matrix: Pose()),  # no orientation
+        ("make_transform", lambda R, p: np.zeros((4, 4))),
+    ],
+)
+def test_what_cannot_be_drawn_is_not(name, wrong):
+    assert pictured(name, wrong) is None
+
+
+def test_the_picture_follows_the_panel_and_a_right_answer_has_none(shell):
+    with capture_output() as wrong:
+        shell.run_cell("import numpy as np\nfrom transform_lab import check\ncheck('invert_transform', lambda T: T)")
+    with capture_output() as right:
+        shell.run_cell("check('invert_transform', np.linalg.inv)")
+    (panel_shown,) = [
+        o.data["text/html"] for o in wrong.outputs if "text/html" in o.data and "<iframe" in o.data["text/html"]
+    ]
+    assert "a (expected)" in panel_shown and "data:image/png" in panel_shown
+    assert "Your answer is the transform itself" in panel_shown
+    assert all("<iframe" not in o.data.get("text/html", "") for o in right.outputs)
 
 
 def test_a_name_without_quotes(said):

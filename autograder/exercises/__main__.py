@@ -1,4 +1,4 @@
-"""`.venv/bin/python -m autograder.exercises`: write README.md beside this file, for instructors, from the specifications."""
+"""`.venv/bin/python -m autograder.exercises`: write README.md beside this file from the specifications."""
 
 from inspect import signature
 from pathlib import Path

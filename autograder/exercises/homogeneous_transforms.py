@@ -495,7 +495,7 @@ TRANSFORM_TO_POSE = Exercise(
             "euler-order",
             _to_pose_with(orientation=lambda matrix: from_euler(_roll_pitch_yaw(matrix), "XYZ")),
             "Roll, pitch and yaw were put together in another order than they were taken apart.",
-            "About fixed axes and about moving ones are two orders; a function from matrix to quaternion needs neither.",
+            "Fixed axes and moving axes are two orders; a function from matrix to quaternion needs neither.",
         ),
         *(
             Misconception("trace-formula-only", _to_pose_with(orientation=orientation), *BREAKS_AT_HALF_TURN)
@@ -670,8 +670,9 @@ POSE_TO_TRANSFORM = Exercise(
         *(
             Misconception(
                 "order-reversed;quaternion-order",
-                lambda pose, order=order: _turned(pose_of((0, 0, 0), orientation(pose)[order]))
-                @ _from_pose_with(lambda q: np.eye(3))(pose),
+                lambda pose, order=order: (
+                    _turned(pose_of((0, 0, 0), orientation(pose)[order])) @ _from_pose_with(lambda q: np.eye(3))(pose)
+                ),
                 *together(TRANSLATION_TURNED, QUATERNION_ORDER),
             )
             for order in ORDERS

@@ -63,7 +63,8 @@ def invert_transform_cases(rng):
     families = {
         "a frame turned by quarter turns": [transform(R, vector(rng)) for R in signed_permutations()],
         "a tilted frame": [
-            transform(R, p), transform(rotation(rng), p), transform(R, vector(rng)), transform(half_turn(rng), vector(rng)),
+            transform(R, p), transform(rotation(rng), p), transform(R, vector(rng)),
+            transform(half_turn(rng), vector(rng)),
         ],
         "a frame in A's origin, or parallel to A": [
             transform(rotation(rng), np.zeros(3)), transform(np.eye(3), vector(rng)),
@@ -205,7 +206,10 @@ INVERT_TRANSFORM = Exercise(
                 "Every entry was inverted by itself.",
                 "`**` and `/` work entry by entry in NumPy. Look among the functions of `np.linalg`.",
             )
-            for wrong in (lambda a_T_b: a_T_b**-1, lambda a_T_b: np.divide(1, a_T_b, np.zeros((4, 4)), where=a_T_b != 0))
+            for wrong in (
+                lambda a_T_b: a_T_b**-1,
+                lambda a_T_b: np.divide(1, a_T_b, np.zeros((4, 4)), where=a_T_b != 0),
+            )
         ),
     ),
 )
@@ -390,7 +394,8 @@ def object_in_gripper_cases(rng):
             (camera, gripper, vector(rng)) for camera, gripper in zip(shuffled[:12], shuffled[12:])
         ],
         "a tilted camera and a tilted gripper": [
-            (C, G, p), (transform(half_turn(rng), vector(rng)), G, p), (C, generic_transform(rng), p), (C, G, vector(rng)),
+            (C, G, p), (C, G, vector(rng)), (C, generic_transform(rng), p),
+            (transform(half_turn(rng), vector(rng)), G, p),
         ],
         "an object in the camera's origin, or a camera in the gripper's place": [(G, C, np.zeros(3)), (G, G, p)],
         "camera, gripper and object far away": [

@@ -252,7 +252,9 @@ SHARED = tuple(
             "yaw-only",
             _moved(lambda p, R, offset: p + _yaw(math.atan2(R[1, 0], R[0, 0])) @ offset),
             *UPRIGHT_ONLY,
-            lambda object_pose, offset: ("position",) if x_axis_upright(matrix(object_pose)[:3, :3]) else (),  # there is no yaw
+            lambda object_pose, offset: (
+                ("position",) if x_axis_upright(matrix(object_pose)[:3, :3]) else ()
+            ),  # there is no yaw
         ),
         ("yaw-only", _yaw_of_quaternion, *UPRIGHT_ONLY),
         *(
@@ -319,9 +321,7 @@ PRE_GRASP = Exercise(
             )
             for shared in SHARED
         ),
-        Misconception(
-            "distance-ignored", lambda object_pose, distance=0.1: pre_grasp(object_pose), *ALWAYS_TEN
-        ),
+        Misconception("distance-ignored", lambda object_pose, distance=0.1: pre_grasp(object_pose), *ALWAYS_TEN),
         Misconception(
             "distance-ignored;wrong-sign",
             lambda object_pose, distance=0.1: pre_grasp(object_pose, -0.1),

@@ -81,7 +81,9 @@ ABOUT_Z = Exercise(
         Misconception("integer-truncation", lambda degrees: rotation_about_z(int(degrees)), *TRUNCATED),
         Misconception(
             "integer-truncation",
-            lambda degrees: np.trunc(rotation_about_z(degrees)) * [[1, 1, 0], [1, 1, 0], [0, 0, 0]] + np.diag([0, 0, 1]),
+            lambda degrees: (
+                np.trunc(rotation_about_z(degrees)) * [[1, 1, 0], [1, 1, 0], [0, 0, 0]] + np.diag([0, 0, 1])
+            ),
             *TRUNCATED,
             varies=lambda degrees: ("rotation",) if degrees % 90 == 0 else (),  # a sine of 1, or a little less and so 0
         ),
@@ -419,8 +421,11 @@ IS_ROTATION = Exercise(
         ),
         Misconception(
             "pair-not-compared",
-            lambda R: _close(np.linalg.norm(R, axis=0), 1.0) and _close([R[:, 0] @ R[:, 1], R[:, 1] @ R[:, 2]], 0.0)
-            and np.linalg.det(R) > 0,
+            lambda R: (
+                _close(np.linalg.norm(R, axis=0), 1.0)
+                and _close([R[:, 0] @ R[:, 1], R[:, 1] @ R[:, 2]], 0.0)
+                and np.linalg.det(R) > 0
+            ),
             "You compare two pairs of axes, and not the third.",
             "How many pairs do three axes make? x with y, y with z, …",
         ),
@@ -440,6 +445,11 @@ _OPPOSITE = np.array([-1.0, -1.0, -1.0, 1.0])  # times a quaternion: the opposit
 
 def same_rotation(q1, q2):
     return _close(q1, q2) or _close(q1, -q2)
+
+
+def _others_rolled(q, kept):
+    """q with one of its numbers kept, and the other three moved on."""
+    return np.insert(np.roll(np.delete(q, kept), 1), kept, q[kept])
 
 
 def same_rotation_cases(rng):
@@ -480,7 +490,7 @@ def same_rotation_cases(rng):
             (tilted[0], tilted[0] * _OPPOSITE), (tilted[1], -tilted[1] * _OPPOSITE), (tilted[2], -tilted[2]),
         ],
         "two quaternions with one number in common, or about the same axis": [
-            *((positive_unit, np.insert(np.roll(np.delete(positive_unit, i), 1), i, positive_unit[i])) for i in range(4)),
+            *((positive_unit, _others_rolled(positive_unit, kept)) for kept in range(4)),
             (turn(axis, 0.9), turn(other, 0.9)), (turn(axis, 0.9), turn(mirrored, 0.9)),
             (turn(axis, 0.5), -turn(axis, 1.4)), (turn(axis, 1.4), -turn(axis, 1.4)),
         ],
@@ -583,7 +593,7 @@ SAME_ROTATION = Exercise(
             "half-turn-missed;quaternion-order",
             _made_positive(0),
             "You make x positive first (or take it for w), and that does not decide between q and -q when x is 0.",
-            "ROS writes w last; and what if the number whose sign you look at is 0? Compare in a way that needs no sign.",
+            "ROS writes w last; and what if the number whose sign you look at is 0? Compare without it.",
         ),
         Misconception(
             "any-for-all",
@@ -591,9 +601,7 @@ SAME_ROTATION = Exercise(
             "You take orientations for the same when one of the four numbers agrees.",
             "All four numbers have to agree at once: what is the difference between `any` and `all`?",
         ),
-        Misconception(
-            "sign-ignored;exact-comparison", np.array_equal, *together(OPPOSITE_REJECTED, NO_TOLERANCE)
-        ),
+        Misconception("sign-ignored;exact-comparison", np.array_equal, *together(OPPOSITE_REJECTED, NO_TOLERANCE)),
         Misconception(
             "angle-only;sign-ignored",
             lambda q1, q2: _close(q1[3], q2[3]),

@@ -34,7 +34,7 @@ class Misconception:
     wrong: Callable
     says: str  # what the answer shows
     hint: str  # helps without giving the solution away
-    # From the arguments to the parts of the answer that hang on how exactly it is computed; others may answer otherwise.
+    # From the arguments to the parts of the answer that hang on how exactly it is computed: others answer otherwise.
     varies: Callable = lambda *args, **kwargs: ()
 
 

@@ -135,12 +135,16 @@ def _same_unfit(returns, unfit, one, other):
     except Unfit as second:
         if unfit.misconception != second.misconception:
             return False
-    if isinstance(one, (list, np.ndarray)) and isinstance(other, (list, np.ndarray)):
-        first, second = np.asarray(one, dtype=object), np.asarray(other, dtype=object)
-        if first.shape != second.shape:
-            return False
-        try:
-            return bool(np.allclose(first.astype(float), second.astype(float), atol=TOLERANCE, equal_nan=True))
-        except (TypeError, ValueError):
-            return False
-    return kind_of(one) == kind_of(other) and str(one) == str(other)
+    try:
+        first, second = _all_numbers(one), _all_numbers(other)
+    except (AttributeError, TypeError, ValueError):  # something else than numbers
+        return kind_of(one) == kind_of(other) and str(one) == str(other)
+    return first.shape == second.shape and np.allclose(first, second, atol=TOLERANCE, equal_nan=True)
+
+
+def _all_numbers(answer):
+    """The numbers of an array, or of a message's fields, as an array."""
+    if hasattr(answer, "position"):
+        p, q = answer.position, answer.orientation
+        return np.array([p.x, p.y, p.z, q.x, q.y, q.z, q.w], dtype=float)
+    return np.array(answer, dtype=float)

@@ -148,7 +148,8 @@ def _decode_message(name, fields, depth):
         raise NotPlain("an unknown message")
     if fields.keys() != set(MESSAGES[name]):
         raise NotPlain(f"a {name} without its fields")
-    message = getattr(messages, name)()
+    kind = getattr(messages, name)
+    message = kind.__new__(kind)  # no defaults: all the fields follow
     for field in MESSAGES[name]:
         setattr(message, field, decode(fields[field], depth + 1))
     return message

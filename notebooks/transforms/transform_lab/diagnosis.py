@@ -8,6 +8,7 @@ is named: a wrong name is worse than none.
 
 import re
 from collections import Counter
+from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
@@ -44,6 +45,7 @@ GENERAL = {
         "Return all the digits there are; round when you print.",
     ),
 }
+NO_NUMBER = r"ZeroDivisionError|FloatingPointError|ValueError: .*(math domain|zero norm)"  # where a formula breaks down
 TRY_BY_HAND = "Call it yourself, in a cell of its own, with arguments of the kind that the docstring describes."
 PRINT_IS_NOT_RETURN = "`print` shows a value to you; only `return` hands it to whoever called the function."
 ADVICE = (  # for errors whose message says little to a beginner: (pattern, what helps)
@@ -85,11 +87,9 @@ def constant(replies):
 def _explain(exercise, replies, outcomes):
     if all(outcome.answered for outcome in outcomes):
         return Diagnosis()
-    found = _one_of(
-        misconception
-        for index, misconception in enumerate(exercise["misconceptions"])
-        if _explains(index, exercise, replies, outcomes)
-    )
+    fits = [_fit(index, exercise, replies, outcomes) for index in range(len(exercise["misconceptions"]))]
+    best = [misconception for misconception, fit in zip(exercise["misconceptions"], fits) if fit == max(fits) > 0]
+    found = _one_of(best)
     if found is not None:
         return found
     problems = [outcome.problem for outcome in outcomes if outcome.problem]
@@ -100,9 +100,8 @@ def _explain(exercise, replies, outcomes):
     return _part_by_part(exercise, outcomes)
 
 
-def _one_of(misconceptions):
+def _one_of(fitting):
     """The Diagnosis that these misconceptions share; None without any, and when they have different names."""
-    fitting = list(misconceptions)
     if len({misconception["id"] for misconception in fitting}) != 1:
         return None
     return Diagnosis(tuple(fitting[0]["id"].split(";")), fitting[0]["says"], fitting[0]["hint"])
@@ -115,29 +114,57 @@ def _together(found):
     return Diagnosis(ids, says, hint)
 
 
-def _explains(index, exercise, replies, outcomes):
-    """Whether the answers equal this misconception's where it differs from the right one, and are right elsewhere."""
-    differs = False
+def _fit(index, exercise, replies, outcomes):
+    """How well a misconception explains the answers: 0 not, 2 exactly, and between when some of its answers are open.
+
+    Exactly: they equal its own wherever it differs from the right one, and are right elsewhere. When its answers are
+    open in some cases, and all else is so, it is the share of these cases that are wrong; a single one proves nothing.
+    """
+    differs, open_cases, wrong_there = False, 0, 0
     for case, reply, outcome in zip(exercise["cases"], replies, outcomes):
         wrong = case["wrong"][index]
         if wrong is None:
             if not outcome.answered:
-                return False
-            continue
-        differs = True
-        if outcome.answered:
-            return False
-        if raises := error_of(wrong):
-            if reply.outcome != "raised" or reply.error.partition(":")[0] != raises:
-                return False
-        elif reply.outcome != "returned" or not same(exercise["returns"], reply.value, wrong):
-            return False
-    return differs
+                return 0
+        elif open_parts := _open_parts(wrong):
+            open_cases, wrong_there = open_cases + 1, wrong_there + (not outcome.answered)
+            if not _broke_down(outcome) and not set(PARTS[exercise["returns"]]) - open_parts <= outcome.parts:
+                return 0
+        else:
+            differs = True
+            if outcome.answered or not _equals(wrong, exercise["returns"], reply, outcome):
+                return 0
+    if not open_cases:
+        return 2 if differs else 0
+    return (1 if differs else wrong_there / open_cases) if differs or wrong_there > 1 else 0
+
+
+def _equals(wrong, returns, reply, outcome):
+    if raises := error_of(wrong):
+        return reply.outcome == "raised" and reply.error.partition(":")[0] == raises
+    if outcome.got is None:
+        return reply.outcome == "returned" and same(returns, reply.value, wrong)
+    try:
+        answer = parts_of(returns, codec.decode(wrong))
+    except Unfit:
+        return False
+    return all(agree(part, outcome.got[part], answer[part]) for part in answer)
+
+
+def _broke_down(outcome):
+    """Whether a formula came to its end: NaN came out, or arithmetic raised an error."""
+    identifier, what = outcome.problem or (None, "")
+    return identifier == "not-finite" or (identifier == "" and re.match(NO_NUMBER, what) is not None)
 
 
 def error_of(wrong):
     """The name of the exception that a misconception's answer in the key stands for, or None."""
     return wrong.get("raises") if isinstance(wrong, dict) else None
+
+
+def _open_parts(wrong):
+    """The parts of the answer that may be anything, where a misconception's answer hangs on how it is computed."""
+    return set(wrong.get("any", ())) if isinstance(wrong, dict) else set()
 
 
 def _general(problems, replies):
@@ -160,39 +187,65 @@ def _general(problems, replies):
 
 
 def _part_by_part(exercise, outcomes):
-    """The Diagnosis of each wrong part of the answer by itself, together; none unless every one has exactly one."""
-    if exercise["returns"] == "truth":
-        return Diagnosis()
+    """The Diagnosis of the wrong parts of the answer by themselves, together.
+
+    There is one when exactly one set of misconceptions, no two touching the same part, explains all that is wrong.
+    """
     parts = PARTS[exercise["returns"]]
-    wrong = [part for part in parts if any(part not in outcome.parts for outcome in outcomes)]
+    wrong = {part for part in parts if any(part not in outcome.parts for outcome in outcomes)}
+    explained = {touched: _one_of(found) for touched, found in _partial_explanations(exercise, outcomes).items()}
+    sets = [
+        chosen
+        for size in range(1, len(wrong) + 1)
+        for chosen in combinations(sorted(explained, key=sorted), size)
+        if sum(map(len, chosen)) == len(wrong) and set().union(*chosen) == wrong
+    ]
+    if len(sets) != 1 or None in (found := [explained[touched] for touched in sets[0]]):
+        return Diagnosis()
+    return _together(sorted(found, key=lambda one: one.ids))
+
+
+def _partial_explanations(exercise, outcomes):
+    """{parts that they touch: [misconceptions that explain the answers in these parts]}"""
+    parts, found, loosely = PARTS[exercise["returns"]], {}, {}
     expected = [parts_of(exercise["returns"], codec.decode(case["expected"])) for case in exercise["cases"]]
-    candidates = {part: [] for part in parts}
     for index, misconception in enumerate(exercise["misconceptions"]):
-        answers = _parts_of_misconception(index, exercise, expected)
-        changed = {part for answer, right in zip(answers, expected) for part in parts
-                   if not agree(part, answer[part], right[part])}  # fmt: skip
-        if len(changed) == 1:
-            (part,) = changed
-            if all(agree(part, outcome.got[part], answer[part]) for outcome, answer in zip(outcomes, answers)):
-                candidates[part].append(misconception)
-    found = []
-    for part in wrong:
+        wrong = _parts_of_misconception(index, exercise, expected)
+        touched = frozenset(
+            part
+            for answer, right in zip(wrong, expected)
+            for part in parts
+            if answer[part] is None or not agree(part, answer[part], right[part])
+        )
+        if touched and all(
+            answer[part] is None or agree(part, outcome.got[part], answer[part])
+            for outcome, answer in zip(outcomes, wrong)
+            for part in touched
+        ):
+            exact = all(part is not None for answer in wrong for part in answer.values())
+            (found if exact else loosely).setdefault(touched, []).append(misconception)
+    for part in parts:
         pairs = [(outcome.got[part], right[part]) for outcome, right in zip(outcomes, expected)]
         for identifier, fits in (("not-normalised", _not_normalised), ("rounded", _rounded)):
-            if fits(part, pairs):
+            if any(part not in outcome.parts for outcome in outcomes) and fits(part, pairs):
                 says, hint = GENERAL[identifier]
-                candidates[part].append({"id": identifier, "says": says, "hint": hint})
-        found.append(_one_of(candidates[part]))
-    return Diagnosis() if None in found else _together(found)
+                found.setdefault(frozenset([part]), []).append({"id": identifier, "says": says, "hint": hint})
+    return loosely | found
 
 
 def _parts_of_misconception(index, exercise, expected):
-    """This misconception's answers, each as its parts; none where one of them cannot be compared part by part."""
+    """This misconception's answers, each as its parts, None for one that may be anything.
+
+    Nothing when one of the answers cannot be taken apart.
+    """
     answers = []
     for case, right in zip(exercise["cases"], expected):
         wrong = case["wrong"][index]
         if error_of(wrong):
             return []
+        if open_parts := _open_parts(wrong):
+            answers.append({part: None if part in open_parts else value for part, value in right.items()})
+            continue
         try:
             answers.append(right if wrong is None else parts_of(exercise["returns"], codec.decode(wrong)))
         except Unfit:
@@ -202,19 +255,20 @@ def _parts_of_misconception(index, exercise, expected):
 
 def _not_normalised(part, pairs):
     """Whether all these quaternions are right but for their length."""
+    if part != "orientation":
+        return False
     lengths = [np.linalg.norm(got) for got, _ in pairs]
-    return part == "orientation" and all(
-        length > TOLERANCE and agree(part, got / length, right) for length, (got, right) in zip(lengths, pairs)
-    )
+    return all(length > TOLERANCE and agree(part, got / length, right) for length, (got, right) in zip(lengths, pairs))
 
 
 def _rounded(part, pairs):
     """Whether all these values are the right ones, rounded to some number of decimals."""
-    for step in (10.0**-decimals for decimals in range(1, 6)):
-        if all(
-            np.all(np.abs(got - step * np.round(got / step)) < 1e-9)
-            and any(np.abs(got - sign * right).max() <= 0.5 * step + 1e-9 for sign in ((1, -1) if part == "orientation" else (1,)))
+    signs = {"answer": (), "orientation": (1, -1)}.get(part, (1,))  # q and -q are the same orientation
+    return any(
+        all(
+            np.abs(got - step * np.round(got / step)).max() < 1e-9
+            and any(np.abs(got - sign * right).max() <= 0.5 * step + 1e-9 for sign in signs)
             for got, right in pairs
-        ):
-            return True
-    return False
+        )
+        for step in (0.1, 0.01, 1e-3, 1e-4, 1e-5)
+    )

@@ -89,6 +89,8 @@ def _example(verdict, numbers):
         names = [f"{names[-1][1:]}[{index}]" for index in range(len(case["args"]))]
     given = {name: codec.decode(plain) for name, plain in (*zip(names, case["args"]), *case["kwargs"].items())}
     yours = _labelled("yours", verdict.answer) if verdict.answer is not None else []
+    if verdict.error and verdict.error not in verdict.says:
+        yours = [f"  yours  {verdict.error}"]
     if not given:  # the expected answer of a function without arguments is the solution
         return yours
     lines = [f"For example, {case['family']}:"]

@@ -11,7 +11,8 @@ An exercise, as `examine` takes it, is a dictionary of plain data:
 - `weights`: {family of cases: how much it counts}
 - `misconceptions`: [{"id", "says", "hint"}, …]
 - `cases`: [{"family", "args", "kwargs", "expected", "wrong"}, …], where `wrong` holds what each misconception would
-  answer: null where it happens to be right, {"raises": name of the exception} where it raises
+  answer: null where it happens to be right, {"raises": name of the exception} where it raises, {"any": parts of the
+  answer} where these may be anything
 """
 
 from dataclasses import dataclass, field
@@ -72,6 +73,7 @@ class Verdict:
     parameters: tuple = ()  # names of the function's parameters, to show a case by
     failing: dict | None = None  # the first case that is not right
     answer: object = None  # the student's answer to it, decoded
+    error: str = ""  # or the error that was raised instead
 
     @property
     def right(self):
@@ -100,7 +102,7 @@ def examine(name, exercise, call):
     verdict.misconceptions, verdict.says, verdict.hint = diagnose(exercise, replies, outcomes)
     for case, reply, outcome in zip(cases, replies, outcomes):
         if not outcome.answered:  # there is none when calls only changed their arguments
-            verdict.failing = case
+            verdict.failing, verdict.error = case, reply.error
             verdict.answer = codec.decode(reply.value) if reply.outcome == "returned" else None
             break
     return verdict

@@ -45,7 +45,7 @@ GENERAL = {
         "Return all the digits there are; round when you print.",
     ),
 }
-ARITHMETIC = ("ZeroDivisionError", "ValueError", "FloatingPointError", "OverflowError", "LinAlgError")
+NO_NUMBER = r"ZeroDivisionError|FloatingPointError|ValueError: .*(math domain|zero norm)"  # where a formula breaks down
 TRY_BY_HAND = "Call it yourself, in a cell of its own, with arguments of the kind that the docstring describes."
 PRINT_IS_NOT_RETURN = "`print` shows a value to you; only `return` hands it to whoever called the function."
 ADVICE = (  # for errors whose message says little to a beginner: (pattern, what helps)
@@ -132,23 +132,29 @@ def _fit(index, exercise, replies, outcomes):
                 return 0
         else:
             differs = True
-            if outcome.answered or not _equals(wrong, exercise["returns"], reply):
+            if outcome.answered or not _equals(wrong, exercise["returns"], reply, outcome):
                 return 0
     if not open_cases:
         return 2 if differs else 0
     return (1 if differs else wrong_there / open_cases) if differs or wrong_there > 1 else 0
 
 
-def _equals(wrong, returns, reply):
+def _equals(wrong, returns, reply, outcome):
     if raises := error_of(wrong):
         return reply.outcome == "raised" and reply.error.partition(":")[0] == raises
-    return reply.outcome == "returned" and same(returns, reply.value, wrong)
+    if outcome.got is None:
+        return reply.outcome == "returned" and same(returns, reply.value, wrong)
+    try:
+        answer = parts_of(returns, codec.decode(wrong))
+    except Unfit:
+        return False
+    return all(agree(part, outcome.got[part], answer[part]) for part in answer)
 
 
 def _broke_down(outcome):
-    """Whether a formula came to its end: no number came out, or arithmetic raised an error."""
+    """Whether a formula came to its end: NaN came out, or arithmetic raised an error."""
     identifier, what = outcome.problem or (None, "")
-    return identifier == "not-finite" or (identifier == "" and what.partition(":")[0] in ARITHMETIC)
+    return identifier == "not-finite" or (identifier == "" and re.match(NO_NUMBER, what) is not None)
 
 
 def error_of(wrong):
@@ -183,7 +189,7 @@ def _general(problems, replies):
 def _part_by_part(exercise, outcomes):
     """The Diagnosis of the wrong parts of the answer by themselves, together.
 
-    There is one when exactly one set of misconceptions, of which no two touch the same part, explains all that is wrong.
+    There is one when exactly one set of misconceptions, no two touching the same part, explains all that is wrong.
     """
     parts = PARTS[exercise["returns"]]
     wrong = {part for part in parts if any(part not in outcome.parts for outcome in outcomes)}
@@ -252,9 +258,7 @@ def _not_normalised(part, pairs):
     if part != "orientation":
         return False
     lengths = [np.linalg.norm(got) for got, _ in pairs]
-    return all(
-        length > TOLERANCE and agree(part, got / length, right) for length, (got, right) in zip(lengths, pairs)
-    )
+    return all(length > TOLERANCE and agree(part, got / length, right) for length, (got, right) in zip(lengths, pairs))
 
 
 def _rounded(part, pairs):

@@ -73,6 +73,7 @@ class Verdict:
     parameters: tuple = ()  # names of the function's parameters, to show a case by
     failing: dict | None = None  # the first case that is not right
     answer: object = None  # the student's answer to it, decoded
+    error: str = ""  # or the error that was raised instead
 
     @property
     def right(self):
@@ -101,7 +102,7 @@ def examine(name, exercise, call):
     verdict.misconceptions, verdict.says, verdict.hint = diagnose(exercise, replies, outcomes)
     for case, reply, outcome in zip(cases, replies, outcomes):
         if not outcome.answered:  # there is none when calls only changed their arguments
-            verdict.failing = case
+            verdict.failing, verdict.error = case, reply.error
             verdict.answer = codec.decode(reply.value) if reply.outcome == "returned" else None
             break
     return verdict
