@@ -2,7 +2,7 @@
 
 For every exercise and for every one of SEEDS, which the hidden cases are drawn from, and for the public cases:
 
-- every misconception is caught, and named by its own id alone
+- every misconception is caught; on every fifth seed it is also named by its own id alone
 - every syntactic mutant of the reference, and of the solution in the notebook, is caught, or is listed below as
   equivalent with the reason
 - every right solution of `solutions/` is accepted, and every wrong one refused
@@ -10,12 +10,14 @@ For every exercise and for every one of SEEDS, which the hidden cases are drawn 
 `python -m pytest tests -k adequacy -s` prints the table.
 """
 
+import io
 import linecache
 import logging
 import warnings
 from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, field
+from contextlib import redirect_stderr
+from dataclasses import replace
 from functools import partial
 
 import nbformat
@@ -33,6 +35,7 @@ from transform_lab.verdict import compare, examine
 from autograder.exercises import EXERCISES, PUBLIC_SEED, key
 
 SEEDS = (PUBLIC_SEED, *range(1000, 1200))
+NAMED_EVERY = 5
 
 # Mutants that are right, too: {why: [what was changed], beginning with the name of the function it was changed in}
 EQUIVALENT = {
@@ -92,15 +95,18 @@ EQUIVALENT = {
     "the tolerance is about 1e-6 all the same; nobody is asked about what lies so near to it": [
         "_close: np.abs(np.asarray(one) - np.asarray(other)) <= tolerance -> "
         "np.abs(np.asarray(one) - np.asarray(other)) < tolerance",
-        "is_rotation: np.allclose(R.T @ R, np.eye(3), rtol=0, atol=1e-06) -> np.allclose(R.T @ R, np.eye(3), atol=1e-06)",
+        "is_rotation: np.allclose(R.T @ R, np.eye(3), rtol=0, atol=1e-06) -> "
+        "np.allclose(R.T @ R, np.eye(3), atol=1e-06)",
         "is_rotation: np.allclose(R.T @ R, np.eye(3), rtol=0, atol=1e-06) -> np.allclose(R.T @ R, np.eye(3), rtol=0)",
-        "is_rotation: np.isclose(np.linalg.det(R), 1, rtol=0, atol=1e-06) -> np.isclose(np.linalg.det(R), 1, atol=1e-06)",
+        "is_rotation: np.isclose(np.linalg.det(R), 1, rtol=0, atol=1e-06) -> "
+        "np.isclose(np.linalg.det(R), 1, atol=1e-06)",
         "is_rotation: np.isclose(np.linalg.det(R), 1, rtol=0, atol=1e-06) -> np.isclose(np.linalg.det(R), 1, rtol=0)",
         "same_rotation: np.allclose(q1, q2, rtol=0, atol=1e-06) -> np.allclose(q1, q2, atol=1e-06)",
         "same_rotation: np.allclose(q1, q2, rtol=0, atol=1e-06) -> np.allclose(q1, q2, rtol=0)",
         "same_rotation: np.allclose(q1, -np.asarray(q2), rtol=0, atol=1e-06) -> "
         "np.allclose(q1, -np.asarray(q2), atol=1e-06)",
-        "same_rotation: np.allclose(q1, -np.asarray(q2), rtol=0, atol=1e-06) -> np.allclose(q1, -np.asarray(q2), rtol=0)",
+        "same_rotation: np.allclose(q1, -np.asarray(q2), rtol=0, atol=1e-06) -> "
+        "np.allclose(q1, -np.asarray(q2), rtol=0)",
     ],
 }
 # …and in one exercise only, for it asks more of the same helper elsewhere
@@ -118,72 +124,73 @@ EQUIVALENT_HERE = {
 }
 
 
-@dataclass
-class Adequacy:
-    """What was found for one exercise; `faults` is what must not be, in words."""
-
-    exercise: str
-    misconceptions: int = 0
-    caught: int = 0
-    equivalent: int = 0
-    right: int = 0
-    wrong: int = 0
-    faults: list = field(default_factory=list)
-
-
 def test_adequacy():
+    spans = [SEEDS[start : start + 50] for start in range(0, len(SEEDS), 50)]
     with ProcessPoolExecutor() as pool:
-        found = list(pool.map(measure, EXERCISES))
-    table = Table("exercise", "misconceptions caught and named", "mutants caught / equivalent", "other wrong caught",
-                  "right solutions accepted", title=f"each for {len(SEEDS)} seeds")  # fmt: skip
-    for each in found:
-        table.add_row(each.exercise, str(each.misconceptions), f"{each.caught} / {each.equivalent}", str(each.wrong),
-                      str(each.right))  # fmt: skip
+        jobs = [pool.submit(measure, name, span) for span in spans for name in EXERCISES]
+        faults = Counter(fault for job in jobs for fault in job.result())
+    table = Table("exercise", "misconceptions caught", "mutants caught", "equivalent", "other wrong caught",
+                  "right accepted", title=f"each for {len(SEEDS)} seeds")  # fmt: skip
+    rows = []
+    for name, exercise in EXERCISES.items():
+        changed = changes(name)
+        alike = len(equivalents(name, changed))
+        right, wrong = students(name)
+        rows.append([len(exercise.misconceptions), len(changed) - alike, alike, len(wrong), len(right)])
+        table.add_row(name, *map(str, rows[-1]))
     table.add_section()
-    total = {
-        name: sum(getattr(each, name) for each in found)
-        for name in vars(found[0])
-        if name not in ("exercise", "faults")
-    }
-    table.add_row("all", str(total["misconceptions"]), f"{total['caught']} / {total['equivalent']}",
-                  str(total["wrong"]), str(total["right"]))  # fmt: skip
-    console = Console(width=120)
+    table.add_row("all", *map(str, np.sum(rows, axis=0)))
+    console = Console(width=110)
     console.print(table)
-    faults = Counter(fault for each in found for fault in each.faults)
     console.print(f"missed, misnamed or refused: {len(faults)}")
     assert not faults, "\n".join(f"{fault} ({times} seeds)" for fault, times in faults.items())
 
 
-def measure(name):
-    """The Adequacy of one exercise's cases."""
+def measure(name, seeds):
+    """What must not be, in words, for one exercise and the cases drawn from `seeds`."""
     warnings.simplefilter("ignore")
     logging.disable()  # students print, warn and log
-    exercise, found = EXERCISES[name], Adequacy(name)
-    changed = mutants(exercise.reference, "autograder.exercises")
-    changed += [(f"notebook: {what}", mutant) for what, mutant in mutants(notebook_solution(name))]
+    exercise, faults = EXERCISES[name], []
+    changed, (right, wrong) = changes(name), students(name)
+    alike = equivalents(name, changed)
+    with np.errstate(all="ignore"), redirect_stderr(io.StringIO()):
+        for seed in seeds:
+            cases = key(replace(exercise, misconceptions=()), seed)
+            for number, misconception in enumerate(exercise.misconceptions):
+                if passes(misconception.wrong, cases):
+                    faults.append(f"{name}: {misconception.id} ({number}) is not caught")
+            faults += [f"{name}: right, and refused: {label}" for label in right if not passes(right[label], cases)]
+            faults += [f"{name}: wrong, and accepted: {label}" for label in wrong if passes(wrong[label], cases)]
+            for what, mutant in changed.items():
+                if (mutant is not None and passes(mutant, cases)) != (what in alike):
+                    kind = "equivalent, and caught" if what in alike else "mutant, and missed"
+                    faults.append(f"{name}: {kind}: {what}")
+        for seed in seeds[::NAMED_EVERY]:
+            cases = key(exercise, seed)
+            for number, misconception in enumerate(exercise.misconceptions):
+                called = examine(name, cases, partial(call, misconception.wrong)).misconceptions
+                if called != tuple(misconception.id.split(";")):
+                    faults.append(f"{name}: {misconception.id} ({number}) is called {called}")
+    return faults
+
+
+def changes(name):
+    """{what was changed: mutant} of the reference and of the notebook's solution."""
+    found = dict(mutants(EXERCISES[name].reference, "autograder.exercises"))
+    return found | {f"notebook: {what}": mutant for what, mutant in mutants(notebook_solution(name))}
+
+
+def equivalents(name, changed):
+    """Those of the changes that are listed as right."""
     reasons = EQUIVALENT | EQUIVALENT_HERE.get(name, {})
     listed = {what for changes in reasons.values() for what in changes}
-    equivalent = {what for what, _ in changed if {what, what.removeprefix("notebook: ")} & listed}
+    return {what for what in changed if {what, what.removeprefix("notebook: ")} & listed}
+
+
+def students(name):
+    """{label: function} of the right solutions, and of the wrong ones."""
     right = {label: function for (of, function), label in zip(RIGHT, NAMES) if of == name}
-    wrong = {function.__name__: function for of, _, function in WRONG if of == name}
-    found.misconceptions, found.right, found.wrong = len(exercise.misconceptions), len(right), len(wrong)
-    found.equivalent, found.caught = len(equivalent), len(changed) - len(equivalent)
-    with np.errstate(all="ignore"):
-        for seed in SEEDS:
-            cases = key(exercise, seed)
-            for misconception in exercise.misconceptions:
-                verdict = examine(name, cases, partial(call, misconception.wrong))
-                if verdict.right or verdict.misconceptions != tuple(misconception.id.split(";")):
-                    found.faults.append(f"{name}: {misconception.id} is called {verdict.misconceptions}")
-            found.faults += [
-                f"{name}: right, and refused: {label}" for label in right if not passes(right[label], cases)
-            ]
-            found.faults += [f"{name}: wrong, and accepted: {label}" for label in wrong if passes(wrong[label], cases)]
-            for what, mutant in changed:
-                if (mutant is not None and passes(mutant, cases)) != (what in equivalent):
-                    kind = "equivalent, and caught" if what in equivalent else "mutant, and missed"
-                    found.faults.append(f"{name}: {kind}: {what}")
-    return found
+    return right, {function.__name__: function for of, _, function in WRONG if of == name}
 
 
 def passes(function, cases):

@@ -129,7 +129,12 @@ def of_one_part(name):
                     right = split(name, exercise.reference(*case.args, **case.kwargs))
                     wrong = split(name, misconception.wrong(*case.args, **case.kwargs))
                     changed |= {part for part in right if not agree(part, wrong[part], right[part])}
-        except (ValueError, ArithmeticError, LookupError, TypeError):  # it answers something of another kind, or nothing
+        except (
+            ValueError,
+            ArithmeticError,
+            LookupError,
+            TypeError,
+        ):  # it answers something of another kind, or nothing
             continue
         if len(changed) == 1:
             found.setdefault(changed.pop(), []).append(misconception)

@@ -15,6 +15,7 @@ from transform_lab.check import call
 from transform_lab.verdict import examine
 
 from autograder.exercises import EXERCISES, PUBLIC_SEED, key
+from autograder.exercises.__main__ import PAGE, page
 from autograder.exercises.cases import either_sign, half_turn
 
 pytestmark = pytest.mark.filterwarnings("ignore:the matrix subclass")  # np.matrix, which students still use
@@ -350,6 +351,37 @@ def test_public_key_is_small():
     sizes = {name: len(json.dumps(key(EXERCISES[name], PUBLIC_SEED))) for name in NAMES}
     print(f"public key: {sum(sizes.values()):,} bytes", sizes)
     assert sum(sizes.values()) < 2_500_000  # a tenth of that when zipped
+
+
+@every_exercise
+def test_credit_is_counted_by_families_and_their_weights(name):
+    """Right in all families but one: that one's share of the weights is lost, or a part of it."""
+    public = key(EXERCISES[name], PUBLIC_SEED)
+    assert set(EXERCISES[name].weights) <= set(public["weights"])
+    total = sum(public["weights"].values())
+    for family, weight in public["weights"].items():
+        cases = iter(public["cases"])
+
+        def wrong_in_one_family(*args, family=family, cases=cases, **kwargs):
+            return None if next(cases)["family"] == family else EXERCISES[name].reference(*args, **kwargs)
+
+        assert judged(name, wrong_in_one_family).credit == pytest.approx(1.0 - weight / total)
+
+
+def test_the_page_for_instructors_is_up_to_date():
+    text = PAGE.read_text(encoding="utf-8")
+    assert text == page(), "run `.venv/bin/python -m autograder.exercises`"
+    for exercise in EXERCISES.values():
+        for misconception in exercise.misconceptions:
+            assert misconception.says in text and misconception.hint in text
+
+
+def test_there_are_enough_misconceptions():
+    least = {"transform_to_pose": 20, "pre_grasp": 10, "invert_transform": 10, "object_in_gripper": 10}
+    least |= {"pose_to_transform": 10, "transform_point": 10, "chain": 10}
+    for name, number in least.items():
+        assert len(EXERCISES[name].misconceptions) >= number
+    assert sum(len(exercise.misconceptions) for exercise in EXERCISES.values()) >= 400
 
 
 # --- what the lab publishes -----------------------------------------------------------------------------------------

@@ -1,11 +1,15 @@
 """The real sandbox: what a notebook's process can do, and what it cannot reach."""
 
 import os
+from functools import cache
 from pathlib import Path
 
 import pytest
 from conftest import ROOT
+from solutions.right import NAMES, RIGHT
+from transform_lab.verdict import examine
 
+from autograder.exercises import EXERCISES, key
 from autograder.sandbox import Ended, Limits, Sandbox
 
 PACKAGE = ROOT / "source/transforms/transform_lab"
@@ -270,3 +274,19 @@ def test_without_bubblewrap_the_same_code_runs_unprotected(sandbox):
         assert value(box, "import os; os.getuid()") == str(os.getuid())
         folder = value(box, "import os; os.getcwd()").strip("'")
     assert not Path(folder).exists()
+
+
+def test_right_solutions_are_right_in_the_sandbox_too(sandbox):
+    """Callable objects, caches, helpers of other cells and the rest: called by name, in the notebook's own process."""
+    source = (Path(__file__).parent / "solutions/right.py").read_text(encoding="utf-8")
+    with sandbox.notebook() as notebook:
+        assert not [output for output in notebook.run_cell(source).outputs if output["output_type"] == "error"]
+        for index, (name, label) in enumerate(zip((name for name, _ in RIGHT), NAMES)):
+            notebook.run_cell(f"{name} = RIGHT[{index}][1]")
+            verdict = examine(name, _hidden(name), lambda args, kwargs, name=name: notebook.call(name, args, kwargs))
+            assert verdict.right, (name, label, verdict.says)
+
+
+@cache
+def _hidden(name):
+    return key(EXERCISES[name], 5)

@@ -214,8 +214,10 @@ def transform_pose_cases(rng):
         "frames turned by quarter turns": [
             (transform(R, vector(rng)), pose(S, vector(rng))) for R, S in zip(shuffled[:12], shuffled[12:])
         ],
-        "tilted frames": [(T, p), (T, generic_pose(rng)), (generic_transform(rng), p)],
-        "a pose in B's origin, or parallel to B; a frame B in A's origin, or parallel to A": [
+        "tilted frames": [
+            (T, p),
+            (T, generic_pose(rng)),
+            (generic_transform(rng), p),
             (generic_transform(rng), pose(rotation(rng), np.zeros(3))),
             (generic_transform(rng), pose(np.eye(3), vector(rng))),
             (transform(rotation(rng), np.zeros(3)), generic_pose(rng)),

@@ -405,6 +405,10 @@ WHOLE_ANGLE = (
     "The quaternion turns by twice the angle.",
     "A quaternion is made of sine and cosine of an angle: is it the whole angle of the rotation?",
 )
+HALF_THE_ANGLE = (
+    "The rotation turns by half the angle.",
+    "A quaternion holds sine and cosine of half an angle: how large is the whole one?",
+)
 WRONG_POSITION = (
     "The position is not B's origin in A.",
     "Check each component by itself: which row and which column of the matrix should it come from?",
@@ -655,9 +659,14 @@ POSE_TO_TRANSFORM = Exercise(
         ),
         Misconception("yaw-only", _from_pose_with(_planar), *YAW_ALONE),
         Misconception(
+            "angle-not-halved",
+            _from_pose_with(lambda q: Rotation.from_rotvec(Rotation.from_quat(q).as_rotvec() / 2.0).as_matrix()),
+            *HALF_THE_ANGLE,
+        ),
+        Misconception(
             "yaw-only;angle-not-halved",
             _from_pose_with(lambda q: np.array([[q[3], -q[2], 0], [q[2], q[3], 0], [0, 0, 1]])),
-            *together(YAW_ALONE, WHOLE_ANGLE),
+            *together(YAW_ALONE, HALF_THE_ANGLE),
         ),
         *(
             Misconception(

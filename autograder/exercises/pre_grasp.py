@@ -333,7 +333,7 @@ PRE_GRASP = Exercise(
             *together(ALWAYS_TEN, IN_THE_BASE),
         ),
         Misconception(
-            "distance-ignored",
+            "wrong-sign",
             lambda object_pose, distance=0.1: pre_grasp(object_pose, abs(distance)),
             "The sign of the distance is ignored.",
             "A negative distance behind the object is a place in front of it.",

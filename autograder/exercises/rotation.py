@@ -590,7 +590,7 @@ SAME_ROTATION = Exercise(
             "What is the sign of w for a half turn? Compare in a way that does not need it.",
         ),
         Misconception(
-            "half-turn-missed;quaternion-order",
+            "half-turn-missed",
             _made_positive(0),
             "You make x positive first (or take it for w), and that does not decide between q and -q when x is 0.",
             "ROS writes w last; and what if the number whose sign you look at is 0? Compare without it.",

@@ -390,7 +390,7 @@ def same_angle_only(q1, q2):
     return bool(abs(abs(q1[3]) - abs(q2[3])) < 1e-6)
 
 
-@wrong("same_rotation", "half-turn-missed", "quaternion-order")
+@wrong("same_rotation", "half-turn-missed")
 def same_w_first_sign(q1, q2):
     """corner: makes the first number positive, thinking it is w: decides nothing when x = 0."""
     def to_wxyz(q):
