@@ -2,7 +2,7 @@
 
 For every exercise and for every one of SEEDS, which the hidden cases are drawn from, and for the public cases:
 
-- every misconception is caught; on every fifth seed it is also named by its own id alone
+- every misconception is caught; on every tenth seed it is also named by its own id alone
 - every syntactic mutant of the reference, and of the solution in the notebook, is caught, or is listed below as
   equivalent with the reason
 - every right solution of `solutions/` is accepted, and every wrong one refused
@@ -35,7 +35,7 @@ from transform_lab.verdict import compare, examine
 from autograder.exercises import EXERCISES, PUBLIC_SEED, key
 
 SEEDS = (PUBLIC_SEED, *range(1000, 1200))
-NAMED_EVERY = 5
+NAMED_EVERY = 10
 
 # Mutants that are right, too: {why: [what was changed], beginning with the name of the function it was changed in}
 EQUIVALENT = {
