@@ -130,7 +130,8 @@ def _variants(node):
         yield node.operand
     elif kind is ast.BoolOp:
         yield from (ast.BoolOp(other(), node.values) for other in SWAPPED[type(node.op)])
-        yield from (ast.BoolOp(node.op, [v for v in node.values if v is not value]) for value in node.values)
+        others = ([v for v in node.values if v is not value] for value in node.values)
+        yield from (rest[0] if len(rest) == 1 else ast.BoolOp(node.op, rest) for rest in others)
     elif kind is ast.Compare:
         for other in SWAPPED.get(type(node.ops[0]), []):
             yield ast.Compare(node.left, [other(), *node.ops[1:]], node.comparators)

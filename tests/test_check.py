@@ -80,6 +80,14 @@ def test_small_readable_numbers(said):
         (np.eye(4), "wrong-type", "an array of shape (4, 4) instead of a Pose"),
         (Pose(Point(0, 0, 0), np.zeros(4)), "wrong-type", "orientation.x"),
         (Pose(Point(np.eye(2), 0, 0), Quaternion(0, 0, 0, 1)), "wrong-type", "position.x"),
+        (
+            Pose(Point([1, [2, 3]], 0, 0), Quaternion(0, 0, 0, 1)),
+            "wrong-type",
+            "a list instead of a number in position.x",
+        ),
+        (Pose(Point({1}, 0, 0), Quaternion(0, 0, 0, 1)), "wrong-type", "a set instead of a number in position.x"),
+        ([[[0] * 100] * 100] * 100, "wrong-type", "a list instead of a Pose"),
+        (np.zeros((0, 3)), "wrong-type", "an array of shape (0, 3)"),
         (Pose(Point(float("nan"), 0, 0), Quaternion(0, 0, 0, 1)), "not-finite", "NaN"),
     ],
 )
@@ -184,9 +192,13 @@ def test_answers_that_look_alike_show_how_far_apart_they_are(said):
         (
             "rotation_from_axes",
             lambda x, y: np.column_stack((x, y, np.cross(y, x))),
-            "a mirror image: the axes are left",
+            "a mirror image, not a rotation: the axes are left",
         ),
-        ("rotation_from_axes", lambda x, y: np.column_stack((x, y, x + y)), "no rotation: its columns are not all of"),
+        (
+            "rotation_from_axes",
+            lambda x, y: np.column_stack((x, y, x + y)),
+            "not a rotation: its columns are not all of",
+        ),
         ("make_transform", lambda R, p: np.vstack((np.column_stack((R, p)), [0, 0, 0, 0])), "bottom row: wrong"),
         (
             "make_transform",
@@ -196,6 +208,9 @@ def test_answers_that_look_alike_show_how_far_apart_they_are(said):
         ("transform_point", lambda T, p: T[:3, 3], "   off by "),
         ("transform_to_pose", lambda T: Pose(Point(*T[:3, 3]), Quaternion()), "no orientation: all four numbers are 0"),
         ("transform_to_pose", lambda T: Pose(Point(*T[:3, 3]), Quaternion(0, 0, 0, 2)), ", and of length 2"),
+        ("transform_to_pose", lambda T: Pose(Point(*T[:3, 3]), Quaternion(1e200, 0, 0, 1)), "and of length inf"),
+        ("transform_point", lambda T, p: ["0.1", "0.2", "0.3"], "a list instead of an array of 3 coordinates"),
+        ("transform_point", lambda T, p: np.zeros((500, 2)), "yours  an array of shape (500, 2)"),
         ("is_rotation", lambda R: True, "  expected  False\n  yours     True"),
         ("chain", lambda *transforms: transforms[0], "transforms[1]"),
         ("is_rotation", lambda R: abs(np.linalg.det(R) - 1) < 1e-6, "not right yet (right in "),

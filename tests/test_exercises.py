@@ -309,7 +309,7 @@ def test_rotations_of_all_kinds_reach_transform_to_pose():
         for case in EXERCISES["transform_to_pose"].cases(np.random.default_rng(seed)):
             R = case.args[0][:3, :3]
             assert np.allclose(R.T @ R, np.eye(3), atol=1e-12) and np.linalg.det(R) > 0
-            assert np.abs(case.args[0][:3, 3]).max() > 0.1
+            assert np.abs(case.args[0][:3, 3]).max() > 0.1 or not case.args[0][:3, 3].any()
             traces.append(np.trace(R))
             if np.array_equal(R, R.round()):
                 exact.add(tuple(R.ravel()))

@@ -520,7 +520,7 @@ OBJECT_IN_GRIPPER = Exercise(
             "optical-frame-assumed",
             lambda c, g, p: object_in_gripper(c, g, np.array([p[2], -p[0], -p[1]])),
             "The camera's axes were reordered, as if its z axis pointed forward.",
-            "camera_link is no optical frame: nothing has to be reordered.",
+            "The camera frame of this exercise is no optical frame: nothing has to be reordered.",
         ),
         Misconception(
             "rest-ignored",

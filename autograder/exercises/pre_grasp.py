@@ -351,7 +351,7 @@ PRE_GRASP = Exercise(
             Misconception(
                 "wrong-axis",
                 lambda object_pose, distance=0.1, axis=axis: waypoint(object_pose, -distance * axis),
-                "The answer lies beside, above or below the object, not behind it.",
+                "You moved along another axis of the object than its x axis.",
                 "Along which axis of the object does the gripper approach?",
             )
             for axis in (*np.eye(3)[1:], *-np.eye(3)[1:])

@@ -40,7 +40,7 @@ IN_RADIANS = (
     "NumPy's and Python's sine and cosine expect radians.",
 )
 THE_OTHER_WAY_ROUND = (
-    "Your frame turns the other way round: B's axes stand in the rows of your matrix, not in its columns.",
+    "Your frame turns the other way round: a sign is wrong, or B's axes stand in the rows of your matrix.",
     "For a small positive angle, where does B's x axis point in A? That is the first column.",
 )
 TRUNCATED = (
@@ -53,7 +53,7 @@ ABOUT_ANOTHER_AXIS = (
     "The axis of a rotation stays where it is: which column of your matrix should be the z axis, unchanged?",
 )
 BOTH_SINES_ALIKE = (
-    "Both sines in your matrix have the same sign, so its columns are no longer at right angles.",
+    "Both sines in your matrix have the same sign, so it is no rotation any more.",
     "Draw B's x axis and y axis, turned by a small angle: which one component of the two axes is negative?",
 )
 NOT_IN_RADIANS = (
@@ -427,7 +427,7 @@ IS_ROTATION = Exercise(
                 and np.linalg.det(R) > 0
             ),
             "You compare two pairs of axes, and not the third.",
-            "How many pairs do three axes make? x with y, y with z, …",
+            "How many pairs do three axes make? You have x with y, and y with z.",
         ),
         Misconception(
             "reflection-accepted;exact-comparison",

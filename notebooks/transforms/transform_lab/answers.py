@@ -82,18 +82,21 @@ def _components(message, name, letters):
     if not all(hasattr(message, letter) for letter in letters):
         what = f"{kind_of(message)} in the field {name}; fill in {', '.join(f'{name}.{c}' for c in letters)}"
         raise Unfit("wrong-type", what)
-    values = [np.asarray(getattr(message, letter)) for letter in letters]
-    for letter, value in zip(letters, values):
-        if value.dtype.kind not in "bif" or value.size != 1:
-            raise Unfit("wrong-type", f"{kind_of(getattr(message, letter))} instead of a number in {name}.{letter}")
-    return _finite(np.array([value.item() for value in values], dtype=np.float64))
+    values = [getattr(message, letter) for letter in letters]
+    for index, (letter, value) in enumerate(zip(letters, values)):
+        if isinstance(value, np.ndarray) and value.size == 1:
+            values[index] = value = value.item()
+        if not isinstance(value, (bool, int, float)):
+            raise Unfit("wrong-type", f"{kind_of(value)} instead of a number in {name}.{letter}")
+    return _finite(np.array(values, dtype=np.float64))
 
 
 def _numbers(answer, wanted):
     try:
-        if isinstance(answer, (bool, str, codec.Other)) or hasattr(answer, "__slots__"):
-            raise ValueError("no array")
-        return np.array(answer, dtype=np.float64)
+        array = np.array(answer)
+        if array.dtype.kind not in "iuf":
+            raise ValueError("no numbers")
+        return array.astype(np.float64)
     except (TypeError, ValueError) as error:
         raise Unfit("wrong-type", f"{kind_of(answer)} instead of {wanted}") from error
 

@@ -7,7 +7,6 @@ import re
 from html import escape
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from . import codec
 from .answers import Unfit, agree, kind_of, parts_of
@@ -137,20 +136,23 @@ def _off(part, got, expected):
         return f"off by {np.linalg.norm(got - expected):.3g} m"
     if part == "rotation":
         if np.abs(got.T @ got - np.eye(3)).max() > 1e-3:
-            return "no rotation: its columns are not all of length 1 and at right angles"
+            return "not a rotation: its columns are not all of length 1 and at right angles"
         if np.linalg.det(got) < 0:
-            return "no rotation, but a mirror image: the axes are left-handed"
-        return f"off by {_degrees(Rotation.from_matrix(got), Rotation.from_matrix(expected))}"
+            return "a mirror image, not a rotation: the axes are left-handed"
+        return f"off by {_degrees('from_matrix', got, expected)}"
     if part == "orientation":
-        length = np.linalg.norm(got)
-        if length < 1e-9:
+        largest = np.abs(got).max()
+        if largest < 1e-9:
             return "no orientation: all four numbers are 0"
-        turn = _degrees(Rotation.from_quat(got), Rotation.from_quat(expected))
+        length, turn = np.linalg.norm(got), _degrees("from_quat", got / largest, expected)
         return f"off by {turn}" if abs(length - 1) < 1e-3 else f"off by {turn}, and of length {length:.3g}"
     return "wrong"
 
 
-def _degrees(one, other):
+def _degrees(form, got, expected):
+    from scipy.spatial.transform import Rotation  # only now: it takes long to import
+
+    one, other = (getattr(Rotation, form)(value) for value in (got, expected))
     return f"{np.degrees((one.inv() * other).magnitude()):.3g} degrees"
 
 
@@ -163,6 +165,8 @@ def _labelled(label, value):
             array = np.array(value, dtype=float)
         except (TypeError, ValueError):
             return [f"  {label}  {str(value)[:200]}"]
+        if not 0 < array.size <= 16:
+            return [f"  {label}  {kind_of(array)}"]
         if array.ndim == 2:
             return [f"  {label}", *(f"    {row}" for row in _in_columns(array)[0])]
         return [f"  {label}  {_row(array)}" if array.ndim == 1 else f"  {label}  {kind_of(array)}"]

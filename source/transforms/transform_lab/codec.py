@@ -60,7 +60,8 @@ def encode(value, depth=0):
                 "fields": {field: encode(getattr(value, field), depth + 1) for field in fields},
             }
     if isinstance(value, (list, tuple)) and len(value) <= LONGEST_LIST:
-        return [encode(item, depth + 1) for item in value]
+        plain = [encode(item, depth + 1) for item in value]
+        return plain if depth or _items(plain) <= LARGEST_ARRAY else _other(value)
     return _other(value)
 
 
@@ -80,6 +81,7 @@ def decode(plain, depth=0):
         return _checked(plain, len(plain) <= LONGEST_TEXT, "text too long")
     if isinstance(plain, list):
         _checked(plain, len(plain) <= LONGEST_LIST, "a list too long")
+        _checked(plain, depth or _items(plain) <= LARGEST_ARRAY, "too much in a list")
         return [decode(item, depth + 1) for item in plain]
     if isinstance(plain, dict):
         kind = next(iter(plain), None)
@@ -94,11 +96,25 @@ def decode(plain, depth=0):
     raise NotPlain("an unknown form")
 
 
+def _items(plain):
+    """The number of things in a list and the lists in it; stops counting when there are too many."""
+    waiting, items = [plain], 0
+    while waiting and items <= LARGEST_ARRAY:
+        for item in waiting.pop():
+            items += 1
+            if isinstance(item, list):
+                waiting.append(item)
+    return items
+
+
 class Other:
     """Stands for a value that has no plain form; `type_name` says what it was."""
 
     def __init__(self, type_name):
         self.type_name = type_name
+
+    def __repr__(self):
+        return f"<{self.type_name}>"
 
 
 def _checked(plain, fine, problem):
