@@ -217,7 +217,7 @@ def test_answers_that_look_alike_show_how_far_apart_they_are(said):
     ],
 )
 def test_how_far_an_answer_is_off(said, name, wrong, words):
-    text, line = failing(name, wrong, said)
+    text, _ = failing(name, wrong, said)
     assert words in text
 
 

@@ -29,7 +29,6 @@ from .homogeneous_transforms import (
     BOTTOM_ROW,
     BREAKS_AT_HALF_TURN,
     ENTRY_BY_ENTRY,
-    INVERSE_RETURNED,
     NO_ORIENTATION,
     ORDERS,
     QUATERNION_ORDER,
@@ -53,8 +52,8 @@ def chain_cases(rng):
     first, second, third = some(3)
     still = np.eye(4)
     families = {
-        "one or two transforms": [(first, second), some(1), (first, third), some(1), (still, second), (first, first)],
         "two frames, each turned by quarter turns": list(zip(shuffled[:12], shuffled[12:])),
+        "one or two transforms": [(first, second), some(1), (first, third), some(1), (still, second), (first, first)],
         "three transforms": [(first, second, third), (second, third, first), (third, third, third)],
         "four to six transforms": [some(4), (first, second, still, third, second), some(6), (first,) * 4],
         "frames far away and close by": [
@@ -87,7 +86,7 @@ EACH_BY_ITSELF = (
     "Each translation counts along the axes of its own frame: the transforms before have turned these.",
 )
 ONE_INVERTED = (
-    "A transform was inverted on the way.",
+    "Transforms were inverted on the way.",
     "Write the frames' names under the product: a chain whose inner names fit needs no inverse.",
 )
 
@@ -164,7 +163,7 @@ CHAIN = Exercise(
             "too-few-arguments",
             lambda first, second: first @ second,
             "Your function takes exactly two transforms.",
-            "A chain can have any number of links: what does the star in the function's first line do?",
+            "A chain can have any number of links: what does a star before a parameter do?",
         ),
         *(
             Misconception(
@@ -184,7 +183,12 @@ CHAIN = Exercise(
             "The matrices were added.",
             "Which operation takes a point through one transform and then through the next?",
         ),
-        Misconception("wrong-direction", lambda *transforms: np.linalg.inv(chain(*transforms)), *INVERSE_RETURNED),
+        Misconception(
+            "wrong-direction",
+            lambda *transforms: np.linalg.inv(chain(*transforms)),
+            "Your answer is the inverse: it describes the first frame in terms of the last.",
+            "Which frame is described, and which one is it described in?",
+        ),
         *(
             Misconception("wrong-transform-inverted", wrong, *ONE_INVERTED)
             for wrong in (
@@ -426,7 +430,7 @@ TRANSFORM_POSE = Exercise(
             "quaternions-added",
             _with_orientation(_angles_added),
             "Roll, pitch and yaw of the two rotations were added.",
-            "Angles add up when both turns have one axis. One rotation after another is a product.",
+            "Angles add up when both turns share an axis. One rotation after another is a product.",
         ),
         Misconception(
             "rotation-applied-twice",

@@ -643,7 +643,7 @@ POSE_TO_TRANSFORM = Exercise(
             "added-not-multiplied",
             lambda pose: _turned(pose) + _from_pose_with(lambda q: np.eye(3))(pose),
             "The matrices of rotation and translation were added.",
-            "Which product of two matrices does first the one and then the other?",
+            "Which product of two matrices applies first one and then the other?",
         ),
         Misconception("wrong-direction", lambda pose: np.linalg.inv(pose_to_transform(pose)), *INVERSE_RETURNED),
         Misconception(
@@ -690,7 +690,8 @@ POSE_TO_TRANSFORM = Exercise(
             Misconception(
                 "wrong-position",
                 lambda pose, order=order: make_transform(pose_to_transform(pose)[:3, :3], position(pose)[order]),
-                *WRONG_POSITION,
+                "The translation is not the pose's position.",
+                "Check each component by itself: x, y and z, from top to bottom.",
             )
             for order in ([0, 1, 0], [2, 1, 0], [0, 2, 1], [1, 0, 2])
         ),
@@ -786,7 +787,12 @@ TRANSFORM_POINT = Exercise(
             lambda a_T_b, p_in_b: p_in_b - a_T_b[:3, 3],
             *together(AXES_TAKEN_AS_PARALLEL, MOVED_BACK),
         ),
-        Misconception("yaw-only", _turned_in_the_plane, *YAW_ALONE),
+        Misconception(
+            "yaw-only",
+            _turned_in_the_plane,
+            "The point was turned about z only.",
+            "Frames can be tilted: all three coordinates of the point take part in the turn.",
+        ),
         Misconception(
             "translation-dropped",
             lambda a_T_b, p_in_b: a_T_b[:3, :3] @ p_in_b,

@@ -16,7 +16,7 @@ from .cases import (
     vector,
     wide_turn,
 )
-from .homogeneous_transforms import BOTTOM_ROW, BREAKS_AT_HALF_TURN, ENTRY_BY_ENTRY, YAW_ALONE
+from .homogeneous_transforms import BOTTOM_ROW, ENTRY_BY_ENTRY
 from .rotation import TRUNCATED
 from .specification import Case, Exercise, Misconception, together
 
@@ -123,14 +123,16 @@ INVERT_TRANSFORM = Exercise(
         Misconception(
             "trace-formula-only",
             _by_axis_and_angle,
-            *BREAKS_AT_HALF_TURN,
+            "Your inverse goes wrong at or near a half turn.",
+            "Axis and angle cannot be read off the matrix's differences there. Turning back needs neither.",
             varies=lambda a_T_b: ("rotation", "translation") if large_turn(a_T_b[:3, :3]) else (),
         ),
         Misconception("integer-truncation", lambda a_T_b: np.trunc(invert_transform(a_T_b)), *TRUNCATED),
         Misconception(
             "yaw-only",
             _yaw_turned_back,
-            *YAW_ALONE,
+            "You turn back about z only; roll and pitch are lost.",
+            "Frames can be tilted. Use the whole rotation, not an angle of it.",
         ),
         Misconception(
             "euler-angles-negated",
@@ -292,7 +294,7 @@ RELATIVE_TRANSFORM = Exercise(
             "orientation-not-transformed",
             lambda a_T_b, a_T_c: transform(a_T_c[:3, :3], relative_transform(a_T_b, a_T_c)[:3, 3]),
             "The rotation is still that of C in A.",
-            "If B is turned in A, C stands otherwise to B than to A.",
+            "If B is turned in A, C is turned differently in B than in A.",
         ),
         Misconception(
             "rotation-not-inverted",
@@ -314,7 +316,7 @@ RELATIVE_TRANSFORM = Exercise(
                 _from_angles(_angles(a_T_c) - _angles(a_T_b)), relative_transform(a_T_b, a_T_c)[:3, 3]
             ),
             "Roll, pitch and yaw of the two rotations were subtracted.",
-            "Angles may be subtracted when both turns have one axis. What undoes a rotation is its inverse.",
+            "Angles may be subtracted when both turns share an axis. What undoes a rotation is its inverse.",
         ),
         Misconception(
             "wrong-sign",
@@ -334,6 +336,18 @@ RELATIVE_TRANSFORM = Exercise(
             "bottom-row-wrong",
             lambda a_T_b, a_T_c: _with_bottom(relative_transform(a_T_b, a_T_c), np.zeros(4)),
             *BOTTOM_ROW,
+        ),
+        Misconception(
+            "wrong-transform-inverted",
+            lambda a_T_b, a_T_c: np.linalg.inv(a_T_b) @ np.linalg.inv(a_T_c),
+            "You inverted both transforms.",
+            "Write the frames' names under your product: which of the two transforms points the right way already?",
+        ),
+        Misconception(
+            "transform-left-out",
+            lambda a_T_b, a_T_c: np.linalg.inv(a_T_b),
+            "C is not in your answer: it is A described in B.",
+            "From B to C there are two steps, by way of A: what is the second?",
         ),
         Misconception("inverse-missing", lambda a_T_b, a_T_c: a_T_b @ a_T_c, *BOTH_AS_THEY_ARE),
         Misconception("inverse-missing", lambda a_T_b, a_T_c: a_T_c @ a_T_b, *BOTH_AS_THEY_ARE),
@@ -420,6 +434,10 @@ ALONG_THE_BASE = (
     "Your answer is an arrow between the gripper and the object, still along the axes of the base.",
     "Seen from the gripper, the same arrow has other components: the gripper's axes are turned.",
 )
+GRIPPER_NOT_INVERTED = (
+    "The gripper's rotation was used as it is, not inverted.",
+    "The columns of base_T_gripper's rotation are the gripper's axes: how far does the arrow go along each of them?",
+)
 FROM_THE_OBJECT = (
     "The arrow goes from the object to the gripper.",
     "Asked for is where the object is, seen from the gripper: which of the two does the arrow start at?",
@@ -468,7 +486,7 @@ OBJECT_IN_GRIPPER = Exercise(
         Misconception(
             "rotation-not-inverted",
             lambda camera, gripper, p: _apply(_rotation_kept(gripper) @ camera, p),
-            *ROTATION_NOT_INVERTED,
+            *GRIPPER_NOT_INVERTED,
         ),
         Misconception(
             "homogeneous-returned",
@@ -508,12 +526,12 @@ OBJECT_IN_GRIPPER = Exercise(
         Misconception(
             "rotation-not-inverted",
             lambda camera, gripper, p: gripper[:3, :3] @ (_apply(camera, p) - gripper[:3, 3]),
-            *ROTATION_NOT_INVERTED,
+            *GRIPPER_NOT_INVERTED,
         ),
         Misconception(
             "rotation-not-inverted;wrong-sign",
             lambda camera, gripper, p: gripper[:3, :3] @ (gripper[:3, 3] - _apply(camera, p)),
-            *together(ROTATION_NOT_INVERTED, FROM_THE_OBJECT),
+            *together(GRIPPER_NOT_INVERTED, FROM_THE_OBJECT),
         ),
         Misconception("integer-truncation", lambda c, g, p: object_in_gripper(c, g, np.trunc(p)), *TRUNCATED),
         Misconception(
@@ -523,7 +541,7 @@ OBJECT_IN_GRIPPER = Exercise(
             "The camera frame of this exercise is no optical frame: nothing has to be reordered.",
         ),
         Misconception(
-            "rest-ignored",
+            "coordinates-ignored",
             lambda c, g, p: object_in_gripper(c, g, np.array([p[0], 0.0, 0.0])),
             "Only the first of the object's coordinates is used.",
             "The object need not be straight in front of the camera.",

@@ -163,11 +163,11 @@ def _turned_twice(object_pose):
 
 IN_THE_BASE = (
     "The offset was added along the axes of the base, as if the object were not turned.",
-    "The offset is given in the object's frame: how do the object's axes lie in the base frame?",
+    "Behind, beside and above are meant along the object's axes: how do these lie in the base frame?",
 )
 OPPOSITE_SIDE = (
     "The answer lies on the opposite side of the object.",
-    "The object's frame tells which side is which: in which direction does its x axis point?",
+    "The object's axes tell which side is which. Do you add the step, or subtract it?",
 )
 TURNED_BACK = (
     "The offset was turned the opposite way.",

@@ -361,10 +361,14 @@ IS_ROTATION = Exercise(
     cases=is_rotation_cases,
     misconceptions=(
         *(
-            Misconception("determinant-only", wrong, *DETERMINANT_ONLY)
-            for wrong in (
-                lambda R: _close(np.linalg.det(R), 1.0),
-                lambda R: _close(abs(np.linalg.det(R)), 1.0),
+            Misconception(identifier, wrong, *says)
+            for identifier, wrong, says in (
+                ("determinant-only", lambda R: _close(np.linalg.det(R), 1.0), DETERMINANT_ONLY),
+                (
+                    "determinant-only;reflection-accepted",
+                    lambda R: _close(abs(np.linalg.det(R)), 1.0),
+                    together(DETERMINANT_ONLY, MIRROR_IMAGES),
+                ),
             )
         ),
         Misconception(

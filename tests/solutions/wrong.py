@@ -1808,7 +1808,7 @@ def isrot_star_no_det(R):
     return np.allclose(R * R.T, np.eye(3), atol=1e-6)
 
 
-@wrong("is_rotation", "determinant-only")
+@wrong("is_rotation", "determinant-only", "reflection-accepted")
 def isrot_abs_det_only(R):
     """The absolute value of the determinant alone."""
     return bool(abs(abs(np.linalg.det(R)) - 1.0) < 1e-6)
@@ -2476,7 +2476,7 @@ def oig_wrong_one_w0(base_T_camera, base_T_gripper, p_in_camera):
     return np.dot(np.dot(camera_T_base, base_T_gripper), p)[:3]
 
 
-@wrong("object_in_gripper", "rest-ignored")
+@wrong("object_in_gripper", "coordinates-ignored")
 def oig_one_metre_ahead(base_T_camera, base_T_gripper, p_in_camera):
     """only easy inputs right: takes the depth alone, 'the object is in front of the camera'; right for the notebook's object."""
     depth = p_in_camera[0]

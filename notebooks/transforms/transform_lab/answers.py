@@ -44,11 +44,11 @@ def parts_of(returns, answer):
     matrix = _numbers(answer, WANTED[returns])
     if returns == "coordinates":
         if matrix.shape not in ((3,), (3, 1), (1, 3)):
-            raise Unfit("wrong-shape", f"an array of shape {matrix.shape}")
+            raise Unfit("wrong-shape", f"an array of shape {matrix.shape} instead of {WANTED[returns]}")
         return {"coordinates": _finite(matrix.reshape(3))}
     shape = (3, 3) if returns == "rotation" else (4, 4)
     if matrix.shape != shape:
-        raise Unfit("wrong-shape", f"an array of shape {matrix.shape}")
+        raise Unfit("wrong-shape", f"an array of shape {matrix.shape} instead of {WANTED[returns]}")
     _finite(matrix)
     if returns == "rotation":
         return {"rotation": matrix}

@@ -91,7 +91,8 @@ def one_line(error):
     for step in traceback.extract_tb(error.__traceback__):
         if step.filename.startswith("<ipython-input") or "ipykernel_" in step.filename:
             where = f", in your line {step.lineno}: `{_shortened(step.line, 80)}`"
-    return _shortened(f"{type(error).__name__}: {' '.join(str(error).split())}", 300) + where
+    message = _shortened(f"{type(error).__name__}: {' '.join(str(error).split())}", 180).rstrip(".: ")
+    return message + where
 
 
 def _shortened(text, most):

@@ -74,7 +74,10 @@ def diagnose(exercise, replies, outcomes):
     found = _explain(exercise, replies, outcomes)
     if not any(outcome.mutated for outcome in outcomes):
         return found
-    return _together([Diagnosis(("input-mutated",), *GENERAL["input-mutated"]), found])
+    says, hint = GENERAL["input-mutated"]
+    if all(outcome.answered for outcome in outcomes):
+        says = f"Your answers are right, but your function {says.removeprefix('Your function ')}"
+    return _together([Diagnosis(("input-mutated",), says, hint), found])
 
 
 def constant(replies):
@@ -176,6 +179,8 @@ def _general(problems, replies):
         hint = next((advice for pattern, advice in ADVICE if re.search(pattern, what)), TRY_BY_HAND)
         return Diagnosis((), f"Your function raised an error{where}: {what}", hint)
     says, hint = GENERAL[identifier]
+    if identifier == "not-finite":
+        return Diagnosis((identifier,), says, hint)
     if identifier != "returned-none":
         return Diagnosis((identifier,), f"{says[:-1]}: {what}.", hint)
     if any(reply.printed for reply in replies):
@@ -263,7 +268,7 @@ def _not_normalised(part, pairs):
 
 def _rounded(part, pairs):
     """Whether all these values are the right ones, rounded to some number of decimals."""
-    signs = {"answer": (), "orientation": (1, -1)}.get(part, (1,))  # q and -q are the same orientation
+    signs = (1, -1) if part == "orientation" else (1,)  # q and -q are the same orientation
     return any(
         all(
             np.abs(got - step * np.round(got / step)).max() < 1e-9

@@ -159,7 +159,8 @@ def _degrees(form, got, expected):
 def _labelled(label, value):
     """Lines that show a value of any kind under its name."""
     if hasattr(value, "position") and hasattr(value, "orientation"):
-        return [f"  {label}", f"    position     {_row(value.position)}", f"    orientation  {_row(value.orientation)}"]
+        fields = {name: getattr(value, name) for name in ("position", "orientation")}
+        return [f"  {label}", *(f"    {name:13}{_field(field)}" for name, field in fields.items())]
     if isinstance(value, (list, np.ndarray)):
         try:
             array = np.array(value, dtype=float)
@@ -173,6 +174,11 @@ def _labelled(label, value):
     if isinstance(value, codec.Other):
         return [f"  {label}  an object of type {value.type_name}"]
     return [f"  {label}  {_short(value)}"]
+
+
+def _field(value):
+    """A field of a Pose; what is no message is said to be what it is."""
+    return _row(value) if hasattr(value, "x") else f"{kind_of(value)}: {_row(value)}"
 
 
 def _in_columns(*matrices):
@@ -197,4 +203,4 @@ def _row(value):
 def _short(number):
     if isinstance(number, (float, np.floating)):
         return f"{round(float(number), 4) + 0.0:g}"
-    return str(number)
+    return repr(number) if isinstance(number, str) else str(number)
