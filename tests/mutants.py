@@ -39,12 +39,12 @@ def _mutants(function, package):
             del definition.body[0]
         for holder, index, node in _places(definition):
             for changed in _variants(node):
-                change = f"{ast.unparse(node)} -> {_text(changed)}"
-                if ast.unparse(node) == _text(changed):
+                before, after = ast.unparse(node), ast.unparse(ast.fix_missing_locations(changed))
+                if before == after:
                     continue
                 holder[index] = changed
                 try:
-                    yield f"{definition.name}: {change}", _made(tree, namespace, function.__name__)
+                    yield f"{definition.name}: {before} -> {after}", _made(tree, namespace, function.__name__)
                 finally:
                     holder[index] = node
         for statements in _blocks(definition):
@@ -74,12 +74,9 @@ def _with_those_it_calls(function, package):
 
 
 def _made(tree, namespace, name):
-    """The function `name` of the changed source; None when Python does not take it."""
+    """The function `name` of the changed source."""
     made = dict(namespace)
-    try:
-        exec(compile(ast.fix_missing_locations(tree), "<mutant>", "exec"), made)
-    except (SyntaxError, ValueError, TypeError):
-        return None
+    exec(compile(ast.fix_missing_locations(tree), "<mutant>", "exec"), made)
     return made[name]
 
 
@@ -103,10 +100,6 @@ def _places(tree):
                 for index, item in enumerate(value):
                     if isinstance(item, ast.expr):
                         yield value, index, item
-
-
-def _text(node):
-    return ast.unparse(ast.fix_missing_locations(node))
 
 
 def _blocks(tree):

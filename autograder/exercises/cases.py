@@ -137,6 +137,26 @@ def either_sign(poses):
     return result
 
 
+def roll_pitch_yaw(R):
+    """Angles (radians) about the fixed axes x, y and z, in this order; at gimbal lock, the yaw is 0."""
+    return Rotation.from_matrix(R).as_euler("xyz", suppress_warnings=True)
+
+
+def from_roll_pitch_yaw(angles):
+    """The rotation matrix of such angles."""
+    return Rotation.from_euler("xyz", angles).as_matrix()
+
+
+def off_diagonal(R):
+    """Twice the sine of the angle times the axis; zero for a half turn."""
+    return np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
+
+
+def with_bottom_row(T, row):
+    """The transform T, its bottom row another."""
+    return np.vstack((T[:3], row))
+
+
 def large_turn(R):
     """Whether the trace is 0 or less: a turn by 120 degrees or more, where some formulas for a quaternion break."""
     return np.trace(R) <= 1e-9

@@ -3,7 +3,6 @@
 from functools import reduce
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from .cases import (
     either_sign,
@@ -18,6 +17,7 @@ from .cases import (
     pose_of,
     position,
     quaternion,
+    roll_pitch_yaw,
     rotation,
     signed_permutations,
     tilt,
@@ -32,6 +32,7 @@ from .homogeneous_transforms import (
     NO_ORIENTATION,
     ORDERS,
     QUATERNION_ORDER,
+    from_euler,
     trace_formula_guarded,
 )
 from .specification import Case, Exercise, Misconception, together
@@ -77,9 +78,10 @@ SOME_LEFT_OUT = (
     "Some of the transforms did not get into the product.",
     "Try your function on one, on two, and on five transforms, and count how many it multiplies.",
 )
+MATCH_THE_NAMES = "Write the frames' names under the product: next to each other, the same frame has to stand twice."
 REVERSED = (
     "The transforms were multiplied in the reverse order.",
-    "Write the frames' names under the product: next to each other, the same frame has to stand twice.",
+    MATCH_THE_NAMES,
 )
 EACH_BY_ITSELF = (
     "The translations were added, each as it is.",
@@ -273,17 +275,12 @@ def _added(first, second):
 
 
 def _angles_added(a_T_b, pose_in_b):
-    angles = [_angles(a_T_b), _angles(matrix(pose_in_b))]
-    return Rotation.from_euler("xyz", np.sum(angles, axis=0)).as_quat()
-
-
-def _angles(T):
-    return Rotation.from_matrix(T[:3, :3]).as_euler("xyz", suppress_warnings=True)
+    return from_euler(sum(roll_pitch_yaw(T[:3, :3]) for T in (a_T_b, matrix(pose_in_b))))
 
 
 THE_WRONG_WAY_ROUND = (
     "The two transforms were multiplied in the wrong order.",
-    "Write the frames' names under the product: next to each other, the same frame has to stand twice.",
+    MATCH_THE_NAMES,
 )
 
 FROM_A_TO_B = (

@@ -11,11 +11,13 @@ from .cases import (
     large_turn,
     matrix,
     near_half_turn,
+    off_diagonal,
     orientation,
     pose,
     pose_of,
     position,
     quaternion,
+    roll_pitch_yaw,
     rotation,
     rotation_about,
     signed_permutations,
@@ -24,6 +26,7 @@ from .cases import (
     transform,
     vector,
     wide_turn,
+    with_bottom_row,
     x_axis_upright,
 )
 from .rotation import TRUNCATED
@@ -72,12 +75,6 @@ def make_transform_cases(rng):
         ],
     }  # fmt: skip
     return [Case(family, pair) for family, pairs in families.items() for pair in pairs]
-
-
-def _with_bottom_row(T, row):
-    T = T.copy()
-    T[3] = row
-    return T
 
 
 ENTRY_BY_ENTRY = (
@@ -132,7 +129,7 @@ MAKE_TRANSFORM = Exercise(
         Misconception("orientation-identity", lambda R, p: make_transform(np.eye(3), p), *NO_ROTATION),
         *(
             Misconception(
-                "bottom-row-wrong", lambda R, p, row=row: _with_bottom_row(make_transform(R, p), row), *BOTTOM_ROW
+                "bottom-row-wrong", lambda R, p, row=row: with_bottom_row(make_transform(R, p), row), *BOTTOM_ROW
             )
             for row in ((0, 0, 0, 0), (1, 1, 1, 1), (1, 0, 0, 0))
         ),
@@ -248,10 +245,10 @@ HAND_TRANSFORM = Exercise(
         ),
         Misconception(
             "translation-in-bottom-row",
-            lambda: _with_bottom_row(_hand(p=(0, 0, 0))(), (-0.1, 0, 0, 1)),
+            lambda: with_bottom_row(_hand(p=(0, 0, 0))(), (-0.1, 0, 0, 1)),
             *TRANSLATION_BELOW,
         ),
-        Misconception("bottom-row-wrong", lambda: _with_bottom_row(hand_transform(), (0, 0, 0, 0)), *BOTTOM_ROW),
+        Misconception("bottom-row-wrong", lambda: with_bottom_row(hand_transform(), (0, 0, 0, 0)), *BOTTOM_ROW),
         Misconception(
             "wrong-direction",
             lambda: np.linalg.inv(hand_transform()),
@@ -283,19 +280,14 @@ def _to_pose_with(position=None, orientation=None):
     return wrong
 
 
-def _off_diagonal(R):
-    """Twice the sine of the angle times the axis; zero for a half turn."""
-    return np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
-
-
 def _trace_formula(matrix):
     w = np.sqrt(1.0 + np.trace(matrix[:3, :3])) / 2.0
-    return np.append(_off_diagonal(matrix) / (4.0 * w), w)
+    return np.append(off_diagonal(matrix) / (4.0 * w), w)
 
 
 def _trace_formula_in_plain_python(matrix):
     w = math.sqrt(1.0 + float(np.trace(matrix[:3, :3]))) / 2.0
-    return [float(difference) / (4.0 * w) for difference in _off_diagonal(matrix)] + [w]  # raises at a half turn
+    return [float(difference) / (4.0 * w) for difference in off_diagonal(matrix)] + [w]  # raises at a half turn
 
 
 def trace_formula_guarded(matrix):
@@ -315,7 +307,7 @@ def _lengths_with_signs(signs):
         a, b, c = np.diag(matrix)[:3]
         squares = np.array([1 + a - b - c, 1 - a + b - c, 1 - a - b + c, 1 + a + b + c])
         sizes = np.sqrt(np.maximum(squares, 0.0)) / 2.0
-        return np.append(signs(sizes[:3], _off_diagonal(matrix)), sizes[3])
+        return np.append(signs(sizes[:3], off_diagonal(matrix)), sizes[3])
 
     return wrong
 
@@ -323,7 +315,7 @@ def _lengths_with_signs(signs):
 def _axis_and_angle(matrix):
     """The axis from the differences off the diagonal; 0/0 without a rotation, a zero vector at a half turn."""
     angle = np.arccos(np.clip((np.trace(matrix[:3, :3]) - 1.0) / 2.0, -1.0, 1.0))
-    axis = _off_diagonal(matrix) / (2.0 * np.sin(angle))
+    axis = off_diagonal(matrix) / (2.0 * np.sin(angle))
     return np.append(axis * np.sin(angle / 2.0), np.cos(angle / 2.0))
 
 
@@ -354,10 +346,6 @@ def _read_as(order, matrix):
 
 
 ORDERS = ([3, 0, 1, 2], [1, 2, 3, 0], [3, 2, 1, 0])
-
-
-def _roll_pitch_yaw(matrix):
-    return Rotation.from_matrix(matrix[:3, :3]).as_euler("xyz", suppress_warnings=True)
 
 
 def from_euler(angles, axes="xyz"):
@@ -491,13 +479,13 @@ TRANSFORM_TO_POSE = Exercise(
         ),
         Misconception(
             "degrees-as-radians",
-            _to_pose_with(orientation=lambda matrix: from_euler(np.degrees(_roll_pitch_yaw(matrix)))),
+            _to_pose_with(orientation=lambda matrix: from_euler(np.degrees(roll_pitch_yaw(matrix[:3, :3])))),
             "Angles in degrees were taken for radians on the way to the quaternion.",
             "Functions of angles expect radians; a function that goes from matrix to quaternion needs no angles.",
         ),
         Misconception(
             "euler-order",
-            _to_pose_with(orientation=lambda matrix: from_euler(_roll_pitch_yaw(matrix), "XYZ")),
+            _to_pose_with(orientation=lambda matrix: from_euler(roll_pitch_yaw(matrix[:3, :3]), "XYZ")),
             "Roll, pitch and yaw were put together in another order than they were taken apart.",
             "Fixed axes and moving axes are two orders; a function from matrix to quaternion needs neither.",
         ),
@@ -536,14 +524,14 @@ TRANSFORM_TO_POSE = Exercise(
         *(
             Misconception(
                 "euler-as-quaternion",
-                _to_pose_with(orientation=lambda matrix, w=w: np.append(_roll_pitch_yaw(matrix), w)),
+                _to_pose_with(orientation=lambda matrix, w=w: np.append(roll_pitch_yaw(matrix[:3, :3]), w)),
                 *ANGLES_AS_QUATERNION,
             )
             for w in (0.0, 1.0)
         ),
         *(
             Misconception("yaw-only", _to_pose_with(orientation=orientation), *YAW_ALONE)
-            for orientation in (_yaw_alone, lambda matrix: from_euler([0.0, 0.0, _roll_pitch_yaw(matrix)[2]]))
+            for orientation in (_yaw_alone, lambda matrix: from_euler([0.0, 0.0, roll_pitch_yaw(matrix[:3, :3])[2]]))
         ),
         Misconception(
             "yaw-only;angle-not-halved",
@@ -624,7 +612,7 @@ POSE_TO_TRANSFORM = Exercise(
         ),
         *(
             Misconception(
-                "bottom-row-wrong", lambda pose, row=row: _with_bottom_row(pose_to_transform(pose), row), *BOTTOM_ROW
+                "bottom-row-wrong", lambda pose, row=row: with_bottom_row(pose_to_transform(pose), row), *BOTTOM_ROW
             )
             for row in ((0, 0, 0, 0), (1, 1, 1, 1))
         ),

@@ -4,9 +4,12 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from .cases import (
+    from_roll_pitch_yaw,
     generic_transform,
     half_turn,
     large_turn,
+    off_diagonal,
+    roll_pitch_yaw,
     rotation,
     rotation_about,
     signed_permutations,
@@ -15,8 +18,9 @@ from .cases import (
     transform,
     vector,
     wide_turn,
+    with_bottom_row,
 )
-from .homogeneous_transforms import BOTTOM_ROW, ENTRY_BY_ENTRY
+from .homogeneous_transforms import BOTTOM_ROW, ENTRY_BY_ENTRY, YAW_ALONE
 from .rotation import TRUNCATED
 from .specification import Case, Exercise, Misconception, together
 
@@ -79,33 +83,19 @@ def _by_axis_and_angle(a_T_b):
     """Turned back by the angle about the axis, which is 0/0 at a half turn."""
     R = a_T_b[:3, :3]
     angle = np.arccos(np.clip((np.trace(R) - 1.0) / 2.0, -1.0, 1.0))
-    difference = np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
-    axis = difference / (2.0 * np.sin(angle)) if angle > 1e-9 else difference
+    axis = off_diagonal(R) / (2.0 * np.sin(angle)) if angle > 1e-9 else off_diagonal(R)
     back = Rotation.from_rotvec(-angle * axis).as_matrix()
     return transform(back, -back @ a_T_b[:3, 3])
 
 
-def _angles(T):
-    """Roll, pitch and yaw."""
-    return Rotation.from_matrix(T[:3, :3]).as_euler("xyz", suppress_warnings=True)
-
-
-def _from_angles(angles):
-    return Rotation.from_euler("xyz", angles).as_matrix()
-
-
 def _angles_negated(a_T_b):
-    R = _from_angles(-_angles(a_T_b))
+    R = from_roll_pitch_yaw(-roll_pitch_yaw(a_T_b[:3, :3]))
     return transform(R, -R @ a_T_b[:3, 3])
 
 
 def _yaw_turned_back(a_T_b):
     R = Rotation.from_euler("z", -np.arctan2(a_T_b[1, 0], a_T_b[0, 0])).as_matrix()
     return transform(R, -R @ a_T_b[:3, 3])
-
-
-def _with_bottom(T, row):
-    return np.vstack((T[:3], row))
 
 
 INVERT_TRANSFORM = Exercise(
@@ -132,7 +122,7 @@ INVERT_TRANSFORM = Exercise(
             "yaw-only",
             _yaw_turned_back,
             "You turn back about z only; roll and pitch are lost.",
-            "Frames can be tilted. Use the whole rotation, not an angle of it.",
+            YAW_ALONE[1],
         ),
         Misconception(
             "euler-angles-negated",
@@ -152,7 +142,7 @@ INVERT_TRANSFORM = Exercise(
         ),
         *(
             Misconception(
-                "bottom-row-wrong", lambda a_T_b, row=row: _with_bottom(invert_transform(a_T_b), row), *BOTTOM_ROW
+                "bottom-row-wrong", lambda a_T_b, row=row: with_bottom_row(invert_transform(a_T_b), row), *BOTTOM_ROW
             )
             for row in ((0, 0, 0, 0), (1, 1, 1, 1))
         ),
@@ -244,9 +234,13 @@ def relative_transform_cases(rng):
     return [Case(family, pair) for family, pairs in families.items() for pair in pairs]
 
 
+MATCH_THE_NAMES = "Write the frames' names under your product: next to each other, the same frame has to stand twice."
+ONE_POINTS_RIGHT = (
+    "Write the frames' names under your product: which of the two transforms points the right way already?"
+)
 BOTH_AS_THEY_ARE = (
     "Neither of the two transforms was inverted.",
-    "Write the frames' names under your product: next to each other, the same frame has to stand twice.",
+    MATCH_THE_NAMES,
 )
 THE_OTHER_INVERTED = (
     "You inverted one transform, but not the one that points the wrong way.",
@@ -254,7 +248,7 @@ THE_OTHER_INVERTED = (
 )
 PRODUCT_REVERSED = (
     "The right transform was inverted, but the product is in the wrong order.",
-    "Write the frames' names under your product: next to each other, the same frame has to stand twice.",
+    MATCH_THE_NAMES,
 )
 B_FROM_C = (
     "Your answer is the inverse: it describes B in terms of C.",
@@ -313,7 +307,8 @@ RELATIVE_TRANSFORM = Exercise(
         Misconception(
             "euler-angles-subtracted",
             lambda a_T_b, a_T_c: transform(
-                _from_angles(_angles(a_T_c) - _angles(a_T_b)), relative_transform(a_T_b, a_T_c)[:3, 3]
+                from_roll_pitch_yaw(roll_pitch_yaw(a_T_c[:3, :3]) - roll_pitch_yaw(a_T_b[:3, :3])),
+                relative_transform(a_T_b, a_T_c)[:3, 3],
             ),
             "Roll, pitch and yaw of the two rotations were subtracted.",
             "Angles may be subtracted when both turns share an axis. What undoes a rotation is its inverse.",
@@ -334,14 +329,14 @@ RELATIVE_TRANSFORM = Exercise(
         ),
         Misconception(
             "bottom-row-wrong",
-            lambda a_T_b, a_T_c: _with_bottom(relative_transform(a_T_b, a_T_c), np.zeros(4)),
+            lambda a_T_b, a_T_c: with_bottom_row(relative_transform(a_T_b, a_T_c), np.zeros(4)),
             *BOTTOM_ROW,
         ),
         Misconception(
             "wrong-transform-inverted",
             lambda a_T_b, a_T_c: np.linalg.inv(a_T_b) @ np.linalg.inv(a_T_c),
             "You inverted both transforms.",
-            "Write the frames' names under your product: which of the two transforms points the right way already?",
+            ONE_POINTS_RIGHT,
         ),
         Misconception(
             "transform-left-out",
@@ -465,7 +460,7 @@ OBJECT_IN_GRIPPER = Exercise(
                 "wrong-transform-inverted",
                 wrong,
                 "You inverted both transforms.",
-                "Write the frames' names under your product: which of the two transforms points the right way already?",
+                ONE_POINTS_RIGHT,
             )
             for wrong in (
                 lambda camera, gripper, p: _apply(_inv(gripper) @ _inv(camera), p),

@@ -8,6 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from .cases import (
     either_sign,
+    from_roll_pitch_yaw,
     large_turn,
     matrix,
     near_half_turn,
@@ -16,6 +17,7 @@ from .cases import (
     pose_of,
     position,
     quaternion,
+    roll_pitch_yaw,
     rotation,
     rotation_about,
     signed_permutations,
@@ -27,8 +29,10 @@ from .cases import (
 )
 from .homogeneous_transforms import (
     BREAKS_AT_HALF_TURN,
+    ENTRY_BY_ENTRY,
     NO_ORIENTATION,
     ORDERS,
+    QUATERNION_ORDER,
     from_euler,
     plain_angles,
     trace_formula_guarded,
@@ -146,14 +150,9 @@ def _with_quaternion_written(order):
     return wrong
 
 
-def _angles_reversed(R):
-    angles = Rotation.from_matrix(R).as_euler("xyz", suppress_warnings=True)
-    return Rotation.from_euler("xyz", angles[::-1]).as_matrix()
-
-
-def _orientation_where(where):
-    """The part in which ways by a matrix differ, for objects turned in a way that `where(R)` is true of."""
-    return lambda object_pose, offset: ("orientation",) if where(matrix(object_pose)[:3, :3]) else ()
+def _open(part, where):
+    """The part in which implementations differ, for objects turned in a way that `where(R)` is true of."""
+    return lambda object_pose, offset: (part,) if where(matrix(object_pose)[:3, :3]) else ()
 
 
 def _turned_twice(object_pose):
@@ -179,7 +178,7 @@ UPRIGHT_ONLY = (
 )
 READ_IN_ANOTHER_ORDER = (
     "The numbers of the quaternion were read in another order than ROS's.",
-    "Which comes first in `tf.transformations`, and which last: is w at the front or at the end?",
+    QUATERNION_ORDER[1],
 )
 
 _back_to_front = _with_quaternion_read(ORDERS[2], copied=True)
@@ -204,14 +203,14 @@ SHARED = tuple(
             "trace-formula-only",
             _moved(_right_position, lambda object_pose: trace_formula_guarded(matrix(object_pose))),
             *BREAKS_AT_HALF_TURN,
-            _orientation_where(large_turn),
+            _open("orientation", large_turn),
         ),
         (
             "gimbal-lock",
             _moved(_right_position, lambda object_pose: from_euler(plain_angles(matrix(object_pose)))),
             "The orientation goes wrong where the object's x axis points straight up or down.",
             "Roll and yaw cannot be told apart there, whatever the formula. Copy the object's quaternion instead.",
-            _orientation_where(x_axis_upright),
+            _open("orientation", x_axis_upright),
         ),
         (
             "position-missing",
@@ -252,9 +251,7 @@ SHARED = tuple(
             "yaw-only",
             _moved(lambda p, R, offset: p + _yaw(math.atan2(R[1, 0], R[0, 0])) @ offset),
             *UPRIGHT_ONLY,
-            lambda object_pose, offset: (
-                ("position",) if x_axis_upright(matrix(object_pose)[:3, :3]) else ()
-            ),  # there is no yaw
+            _open("position", x_axis_upright),  # where there is no yaw
         ),
         ("yaw-only", _yaw_of_quaternion, *UPRIGHT_ONLY),
         *(
@@ -392,7 +389,7 @@ WAYPOINT = Exercise(
                 "elementwise-product",
                 _moved(lambda p, R, offset, of=of: p + of(R, offset)),
                 "Rotation and offset were multiplied entry by entry.",
-                "`*` is not the matrix product in NumPy. Which operator is?",
+                ENTRY_BY_ENTRY[1],
             )
             for of in (lambda R, offset: np.sum(R * offset, axis=0), lambda R, offset: np.diag(R) * offset)
         ),
@@ -404,7 +401,7 @@ WAYPOINT = Exercise(
         ),
         Misconception(
             "euler-order",
-            _moved(lambda p, R, offset: p + _angles_reversed(R) @ offset),
+            _moved(lambda p, R, offset: p + from_roll_pitch_yaw(roll_pitch_yaw(R)[::-1]) @ offset),
             "Roll, pitch and yaw were put together in another order than they were taken apart.",
             "A rotation matrix or a quaternion can be used as it is, without any angles.",
         ),

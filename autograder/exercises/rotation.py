@@ -4,11 +4,10 @@ import math
 
 import numpy as np
 from scipy.spatial.transform import Rotation
+from transform_lab.answers import TOLERANCE
 
 from .cases import half_turn, quaternion, rotation, rotation_about, signed_permutations, slanted_axis, tilt, transform
 from .specification import Case, Exercise, Misconception, together
-
-TOLERANCE = 1e-6
 
 # --- rotation_about_z -----------------------------------------------------------------------------------------------
 

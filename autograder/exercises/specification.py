@@ -11,6 +11,7 @@ from inspect import signature
 import numpy as np
 from transform_lab import codec
 from transform_lab.answers import PARTS, same
+from transform_lab.diagnosis import error_of, open_parts_of
 
 PUBLIC_SEED = 24  # the cases students see; any other seed draws hidden ones
 DIGITS = 12  # decimals kept of arguments and right answers: far below the tolerance of 1e-6
@@ -106,12 +107,14 @@ def _wrong_answer(misconception, args, kwargs):
     open_parts = misconception.varies(
         *(codec.decode(arg) for arg in args), **{name: codec.decode(arg) for name, arg in kwargs.items()}
     )
-    return {"any": list(open_parts)} if open_parts else _answer(misconception.wrong, args, kwargs)
+    answer = {"any": list(open_parts)} if open_parts else _answer(misconception.wrong, args, kwargs)
+    if answer is None:  # which would stand for a right answer in the key
+        raise ValueError(f"{misconception.id}: to return None is a misconception of every exercise already")
+    return answer
 
 
 def _right(returns, answer, expected):
-    special = isinstance(answer, dict) and answer.keys() & {"any", "raises"}
-    return not special and same(returns, answer, expected)
+    return not error_of(answer) and not open_parts_of(answer) and same(returns, answer, expected)
 
 
 def _answer(function, args, kwargs):

@@ -124,11 +124,23 @@ def same(returns, one, other):
         first = parts_of(returns, one)
     except Unfit as unfit:
         return _same_unfit(returns, unfit, one, other)
+    return made_of(returns, first, other)
+
+
+def made_of(returns, parts, answer):
+    """Whether `answer` (decoded) has just these parts."""
     try:
-        second = parts_of(returns, other)
+        others = parts_of(returns, answer)
     except Unfit:
         return False
-    return all(agree(part, first[part], second[part]) for part in PARTS[returns])
+    return all(agree(part, parts[part], others[part]) for part in PARTS[returns])
+
+
+def matrix_of(parts):
+    """The 3x3 or 4x4 matrix that has these parts."""
+    if "translation" not in parts:
+        return parts["rotation"]
+    return np.vstack([np.column_stack([parts["rotation"], parts["translation"]]), parts["bottom row"]])
 
 
 def _same_unfit(returns, unfit, one, other):

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from . import codec
-from .answers import PARTS, TOLERANCE, Unfit, agree, parts_of, same
+from .answers import PARTS, TOLERANCE, Unfit, agree, made_of, parts_of, same
 
 # Failures that any exercise can have: what the answer shows, and what helps.
 GENERAL = {
@@ -90,9 +90,10 @@ def constant(replies):
 def _explain(exercise, replies, outcomes):
     if all(outcome.answered for outcome in outcomes):
         return Diagnosis()
-    fits = [_fit(index, exercise, replies, outcomes) for index in range(len(exercise["misconceptions"]))]
-    best = [misconception for misconception, fit in zip(exercise["misconceptions"], fits) if fit == max(fits) > 0]
-    found = _one_of(best)
+    misconceptions = exercise["misconceptions"]
+    fits = [_fit(index, exercise, replies, outcomes) for index in range(len(misconceptions))]
+    best = max(fits, default=0)
+    found = _one_of([misconception for misconception, fit in zip(misconceptions, fits) if fit == best > 0])
     if found is not None:
         return found
     problems = [outcome.problem for outcome in outcomes if outcome.problem]
@@ -113,15 +114,16 @@ def _one_of(fitting):
 def _together(found):
     """Several Diagnoses as one."""
     ids = tuple(dict.fromkeys(identifier for one in found for identifier in one.ids))
-    says, hint = (" ".join(filter(None, dict.fromkeys(texts))) for texts in list(zip(*found))[1:])
-    return Diagnosis(ids, says, hint)
+    says, hint = dict.fromkeys(one.says for one in found), dict.fromkeys(one.hint for one in found)
+    return Diagnosis(ids, " ".join(filter(None, says)), " ".join(filter(None, hint)))
 
 
 def _fit(index, exercise, replies, outcomes):
-    """How well a misconception explains the answers: 0 not, 2 exactly, and between when some of its answers are open.
+    """How well a misconception explains the answers.
 
-    Exactly: they equal its own wherever it differs from the right one, and are right elsewhere. When its answers are
-    open in some cases, and all else is so, it is the share of these cases that are wrong; a single one proves nothing.
+    0: not. 2: they equal its own wherever it differs from the right one, and are right elsewhere. 1: so they do, where
+    its own are not open. Less: it is open wherever it differs, and this share of these cases is wrong (a single wrong
+    one proves nothing).
     """
     differs, open_cases, wrong_there = False, 0, 0
     for case, reply, outcome in zip(exercise["cases"], replies, outcomes):
@@ -129,7 +131,7 @@ def _fit(index, exercise, replies, outcomes):
         if wrong is None:
             if not outcome.answered:
                 return 0
-        elif open_parts := _open_parts(wrong):
+        elif open_parts := open_parts_of(wrong):
             open_cases, wrong_there = open_cases + 1, wrong_there + (not outcome.answered)
             if not _broke_down(outcome) and not set(PARTS[exercise["returns"]]) - open_parts <= outcome.parts:
                 return 0
@@ -137,9 +139,9 @@ def _fit(index, exercise, replies, outcomes):
             differs = True
             if outcome.answered or not _equals(wrong, exercise["returns"], reply, outcome):
                 return 0
-    if not open_cases:
-        return 2 if differs else 0
-    return (1 if differs else wrong_there / open_cases) if differs or wrong_there > 1 else 0
+    if differs:
+        return 1 if open_cases else 2
+    return wrong_there / open_cases if wrong_there > 1 else 0
 
 
 def _equals(wrong, returns, reply, outcome):
@@ -147,11 +149,7 @@ def _equals(wrong, returns, reply, outcome):
         return reply.outcome == "raised" and reply.error.partition(":")[0] == raises
     if outcome.got is None:
         return reply.outcome == "returned" and same(returns, reply.value, wrong)
-    try:
-        answer = parts_of(returns, codec.decode(wrong))
-    except Unfit:
-        return False
-    return all(agree(part, outcome.got[part], answer[part]) for part in answer)
+    return made_of(returns, outcome.got, codec.decode(wrong))
 
 
 def _broke_down(outcome):
@@ -165,7 +163,7 @@ def error_of(wrong):
     return wrong.get("raises") if isinstance(wrong, dict) else None
 
 
-def _open_parts(wrong):
+def open_parts_of(wrong):
     """The parts of the answer that may be anything, where a misconception's answer hangs on how it is computed."""
     return set(wrong.get("any", ())) if isinstance(wrong, dict) else set()
 
@@ -248,7 +246,7 @@ def _parts_of_misconception(index, exercise, expected):
         wrong = case["wrong"][index]
         if error_of(wrong):
             return []
-        if open_parts := _open_parts(wrong):
+        if open_parts := open_parts_of(wrong):
             answers.append({part: None if part in open_parts else value for part, value in right.items()})
             continue
         try:

@@ -5,7 +5,7 @@ import re
 import numpy as np
 
 from . import codec, tft
-from .answers import Unfit, parts_of
+from .answers import matrix_of, parts_of
 from .shapes import X_RED, Y_GREEN, Z_BLUE
 from .viewer import Viewer
 
@@ -36,7 +36,7 @@ def scene(verdict):
                 viewer.add_frame(label, answer, ghost=ghost)
             else:
                 _add_matrix(viewer, label, parts, ghost)
-    except (Unfit, ValueError):  # nothing that could be drawn; the panel says what is wrong with it
+    except ValueError:  # nothing that could be drawn; the panel says what is wrong with it
         return None
     return viewer
 
@@ -50,11 +50,11 @@ def _frames(answer):
 
 def _add_matrix(viewer, label, parts, ghost):
     """Add a frame; of a matrix that is no rotation, its three columns as arrows."""
-    matrix = np.eye(4)
-    matrix[:3, :3], matrix[:3, 3] = parts["rotation"], parts.get("translation", np.zeros(3))
-    matrix[3] = parts.get("bottom row", matrix[3])
+    length, matrix = None, matrix_of(parts)
+    if matrix.shape == (3, 3):
+        length, matrix = 1.0, tft.identity_matrix()  # as long as unit axes are, to compare other columns with
+        matrix[:3, :3] = parts["rotation"]
     try:
-        length = None if "translation" in parts else 1.0  # that of unit axes, to compare other columns with
         viewer.add_frame(label, matrix, length=length, ghost=ghost)
     except ValueError:
         if not np.array_equal(matrix[3], [0, 0, 0, 1]):
@@ -77,7 +77,7 @@ def _add_given(viewer, parameters, given, answer):
     known = {root}
     for _ in edges:  # each round reaches one step further
         for parent, child, transform in edges:
-            if {parent, child} & {answer} or (parent in known) == (child in known):
+            if answer in (parent, child) or (parent in known) == (child in known):
                 continue
             if child in known:
                 parent, child, transform = child, parent, tft.inverse_matrix(transform)

@@ -9,7 +9,7 @@ from html import escape
 import numpy as np
 
 from . import codec
-from .answers import Unfit, agree, kind_of, parts_of
+from .answers import Unfit, agree, kind_of, matrix_of, parts_of
 
 COLOURS = {"right": "#1b7837", "wrong": "#d9690f", "waiting": "#888888"}  # of bar and mark, on white and on black
 
@@ -109,7 +109,7 @@ def _compared(returns, got, expected):
     if returns == "truth":
         return [f"  {who:10}{bool(value['answer'])}" for who, value in (("expected", expected), ("yours", got))]
     if "rotation" in expected:
-        left, right = _in_columns(_whole(expected), _whole(got))
+        left, right = _in_columns(matrix_of(expected), matrix_of(got))
         indent = len(left[0]) + 4
         lines = [f"  {'expected':{indent}}yours", *(f"  {one:{indent}}{other}" for one, other in zip(left, right))]
         return [*lines, *(f"  {part}: {what}" for part, what in off.items())]
@@ -119,13 +119,6 @@ def _compared(returns, got, expected):
         lines.append(f"  {part if width else '':{width}}expected  {_row(right)}")
         lines.append(f"  {'':{width}}yours     {_row(got[part])}   {off[part]}")
     return lines
-
-
-def _whole(parts):
-    """The matrix of a rotation's or a transform's parts."""
-    if "translation" not in parts:
-        return parts["rotation"]
-    return np.vstack([np.column_stack([parts["rotation"], parts["translation"]]), parts["bottom row"]])
 
 
 def _off(part, got, expected):

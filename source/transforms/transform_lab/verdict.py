@@ -71,7 +71,7 @@ class Verdict:
     returns: str = ""  # the kind of answer
     wanted: str = ""  # the answer's name, such as "b_T_a"
     parameters: tuple = ()  # names of the function's parameters, to show a case by
-    failing: dict | None = None  # the first case that is not right
+    failing: dict | None = None  # the first case with a wrong answer, or none
     answer: object = None  # the student's answer to it, decoded
     error: str = ""  # or the error that was raised instead
 
@@ -90,9 +90,15 @@ def examine(name, exercise, call):
         if reply.outcome not in ("returned", "raised"):
             return _unfinished(name, reply, case)
     outcomes = [compare(returns, case, reply) for case, reply in zip(cases, replies)]
-    verdict = Verdict(name, cases=len(cases), credit=_credit(exercise, outcomes), returns=returns)
-    verdict.wanted, verdict.parameters = exercise["answer"], tuple(exercise["parameters"])
-    verdict.parts = {part: sum(part in outcome.parts for outcome in outcomes) for part in PARTS[returns]}
+    verdict = Verdict(
+        name,
+        credit=_credit(exercise, outcomes),
+        parts={part: sum(part in outcome.parts for outcome in outcomes) for part in PARTS[returns]},
+        cases=len(cases),
+        returns=returns,
+        wanted=exercise["answer"],
+        parameters=tuple(exercise["parameters"]),
+    )
     if all(outcome.right for outcome in outcomes):
         return verdict
     if all(reply.outcome == "raised" for reply in replies):
