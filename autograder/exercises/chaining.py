@@ -424,7 +424,7 @@ TRANSFORM_POSE = Exercise(
             "One rotation after another is a product, of quaternions as of matrices.",
         ),
         Misconception(
-            "quaternions-added",
+            "euler-angles-added",
             _with_orientation(_angles_added),
             "Roll, pitch and yaw of the two rotations were added.",
             "Angles add up when both turns share an axis. One rotation after another is a product.",
