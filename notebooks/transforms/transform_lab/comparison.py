@@ -6,7 +6,9 @@ import numpy as np
 
 from . import codec, tft
 from .answers import matrix_of, parts_of
+from .drawing import round_number
 from .shapes import X_RED, Y_GREEN, Z_BLUE
+from .validation import FARTHEST
 from .viewer import Viewer
 
 
@@ -27,18 +29,29 @@ def scene(verdict):
     viewer = Viewer(parent)
     try:
         _add_given(viewer, verdict.parameters, given, name)
-        for whose, answer in answers.items():
-            parts = parts_of(verdict.returns, answer)
-            label, ghost = f"{name} ({whose})", whose == "expected"
+        all_parts = {whose: parts_of(verdict.returns, answer) for whose, answer in answers.items()}
+        for whose, parts in all_parts.items():
+            label, ghost, answer = f"{name} ({whose})", whose == "expected", answers[whose]
             if verdict.returns == "coordinates":
                 viewer.add_point(label, parts["coordinates"], ghost=ghost)
             elif verdict.returns == "pose":
                 viewer.add_frame(label, answer, ghost=ghost)
             else:
-                _add_matrix(viewer, label, parts, ghost)
+                _add_matrix(viewer, label, parts, ghost, _length(all_parts.values()))
     except ValueError:  # nothing that could be drawn; the panel says what is wrong with it
         return None
-    return viewer
+    if "expected" in answers:
+        viewer.text = "pale: expected"
+    return viewer.look(at=_close_together(viewer))
+
+
+def _close_together(viewer):
+    """The names of all but the fixed frame, where this is so far from them that they would be small; else None."""
+    places = {name: viewer.in_root(name)[:3, 3] for name in viewer.frames if name != viewer.root}
+    if len(places) < 2 or viewer.points or viewer.arrows:
+        return None
+    spread, distance = np.ptp(list(places.values()), axis=0).max(), np.linalg.norm(list(places.values()), axis=1).min()
+    return list(places) if 0 < 3 * spread < distance else None
 
 
 def _frames(answer):
@@ -48,11 +61,17 @@ def _frames(answer):
     return re.fullmatch(r"(\w+?)_[TR]_(\w+)", answer).groups()
 
 
-def _add_matrix(viewer, label, parts, ghost):
-    """Add a frame; of a matrix that is no rotation, its three columns as arrows."""
-    length, matrix = None, matrix_of(parts)
+def _length(answers):
+    """How long to draw the axes of matrices (given by their parts), in metres."""
+    sizes = [np.abs(parts["translation"]).max() for parts in answers if "translation" in parts]
+    return round_number(0.5 * max(sizes)) if sizes and 0 < max(sizes) < FARTHEST else 1.0
+
+
+def _add_matrix(viewer, label, parts, ghost, length):
+    """Add a frame; of a matrix that is no rotation, its three columns as arrows, to the scale of the frames' axes."""
+    matrix = matrix_of(parts)
     if matrix.shape == (3, 3):
-        length, matrix = 1.0, tft.identity_matrix()  # as long as unit axes are, to compare other columns with
+        matrix = tft.identity_matrix()
         matrix[:3, :3] = parts["rotation"]
     try:
         viewer.add_frame(label, matrix, length=length, ghost=ghost)
@@ -60,7 +79,7 @@ def _add_matrix(viewer, label, parts, ghost):
         if not np.array_equal(matrix[3], [0, 0, 0, 1]):
             raise
         for letter, column, color in zip("xyz", matrix[:3, :3].T, (X_RED, Y_GREEN, Z_BLUE)):
-            viewer.add_arrow(f"your {letter}", matrix[:3, 3] + column, tail=matrix[:3, 3], color=color)
+            viewer.add_arrow(f"your {letter}", matrix[:3, 3] + length * column, tail=matrix[:3, 3], color=color)
 
 
 def _add_given(viewer, parameters, given, answer):

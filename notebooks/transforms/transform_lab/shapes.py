@@ -10,11 +10,13 @@ from urllib.parse import quote
 import numpy as np
 
 from .messages import Marker
-from .validation import numbers
+from .validation import near, numbers
 
 X_RED, Y_GREEN, Z_BLUE = (0.84, 0.12, 0.12, 1), (0.05, 0.58, 0.15, 1), (0.12, 0.30, 0.92, 1)
 DARK = (0.15, 0.15, 0.2, 1)
 GREY = (0.55, 0.55, 0.6, 1)
+ORANGE, PURPLE = (0.93, 0.49, 0.0, 1), (0.52, 0.18, 0.66, 1)  # points and arrows
+BROWN, STEEL = (0.76, 0.62, 0.42, 1), (0.38, 0.42, 0.48, 1)  # boxes and grippers
 
 
 @dataclass
@@ -40,13 +42,25 @@ class Cloud:
 
 
 @dataclass
+class Mesh:
+    """Triangles seen from both sides: `corners` Nx3x3, `colors` Nx3x4, one for each corner."""
+
+    corners: np.ndarray
+    colors: np.ndarray
+
+
+@dataclass
 class Label:
-    """Text at a position (3 numbers), or `beside` it: wherever around it no other label stands."""
+    """Text at a position (3 numbers), or `beside` it: wherever around it no other label stands.
+
+    `height` is that of a capital letter, in metres; by default the text is as large as text on a page.
+    """
 
     text: str
     position: np.ndarray
     color: tuple = DARK
     beside: bool = False
+    height: float | None = None
 
 
 # Where a label stands beside its position: to the right (in half widths of the text) and up (in lines), best first.
@@ -64,6 +78,7 @@ class Node:
     transform: np.ndarray
     solids: list = field(default_factory=list)
     clouds: list = field(default_factory=list)
+    meshes: list = field(default_factory=list)
     labels: list = field(default_factory=list)
 
 
@@ -121,9 +136,26 @@ def frame_node(name, transform, length, ghost=False):
     return node
 
 
+def gripper_node(gripper, transform):
+    """Return a Node with a parallel-jaw gripper at `transform`: fingers along x, moving along y, tips around the origin.
+
+    Its proportions are those of a common 8 cm gripper.
+    """
+    node = Node(path("grippers", gripper.frame), transform)
+    color = translucent(gripper.color) if gripper.ghost else gripper.color
+    unit = gripper.opening / 0.08  # so that what follows is in metres for an opening of 8 cm
+    dark = (*(0.7 * value for value in color[:3]), color[3])
+    parts = [((-0.028, 0.045, 0), (0.09, 0.01, 0.02), dark), ((-0.028, -0.045, 0), (0.09, 0.01, 0.02), dark)]
+    parts += [((-0.088, 0, 0), (0.03, 0.12, 0.04), color), ((-0.123, 0, 0), (0.04, 0.05, 0.04), color)]
+    for middle, size, shade in parts:
+        node.solids.append(placed("box", unit * np.array(middle), unit * np.array(size), shade))
+    return node
+
+
 def xyz(message):
     """Return the x, y, z of a Point or Vector3 as an array."""
-    return numbers([message.x, message.y, message.z], type(message).__name__, lengths=(3,))
+    kind = type(message).__name__
+    return near(numbers([message.x, message.y, message.z], kind, lengths=(3,)), kind)
 
 
 def translucent(color):
@@ -147,6 +179,8 @@ def draw_marker(marker, node):
     Raises ValueError for a size of 0, an odd number of points in a LINE_LIST, and for types that are not drawn.
     """
     color, size, kind = rgba(marker.color), xyz(marker.scale), marker.type
+    if len(marker.points) > MOST and kind != Marker.POINTS:
+        raise ValueError(f"a marker draws at most {MOST} points; got {len(marker.points)}. POINTS take any number")
     points = [xyz(point) for point in marker.points]
     colors = [rgba(c) for c in marker.colors] if len(marker.colors) == len(points) > 0 else [color] * len(points)
     if kind == Marker.ARROW and points:
@@ -176,18 +210,29 @@ def draw_marker(marker, node):
         if points:
             node.clouds.append(Cloud(np.array(points), np.array(colors), size[0]))
     elif kind == Marker.TEXT_VIEW_FACING:
-        node.labels.append(Label(marker.text, np.zeros(3), color))
+        _need_size(size[2:], "scale.z (height of a capital letter)")
+        node.labels.append(Label(marker.text, np.zeros(3), color, height=size[2]))
+    elif kind == Marker.TRIANGLE_LIST:
+        _need_size(size, "scale.x, scale.y and scale.z")
+        if len(points) % 3:
+            raise ValueError(f"a TRIANGLE_LIST takes three points for each triangle; got {len(points)} points")
+        if len(marker.colors) * 3 == len(points):  # one colour for each triangle
+            colors = [rgba(c) for c in marker.colors for _ in range(3)]
+        if points:
+            corners = near(np.reshape(points, (-1, 3, 3)) * size, "a triangle's corner")
+            node.meshes.append(Mesh(corners, np.reshape(colors, (-1, 3, 4))))
     else:
         raise ValueError(f"markers of type {marker_type(marker)} are not drawn yet; these are: {', '.join(DRAWN)}")
 
 
+MOST = 2000  # of what is drawn as solids; more would take a browser seconds
 SOLIDS = {Marker.CUBE: "box", Marker.SPHERE: "sphere", Marker.CYLINDER: "cylinder"}
 SOLID_LISTS = {Marker.CUBE_LIST: "box", Marker.SPHERE_LIST: "sphere"}
 TYPE_NAMES = (
     "ARROW CUBE SPHERE CYLINDER LINE_STRIP LINE_LIST CUBE_LIST SPHERE_LIST POINTS TEXT_VIEW_FACING"
     " MESH_RESOURCE TRIANGLE_LIST"
 ).split()
-DRAWN = TYPE_NAMES[:10]
+DRAWN = [name for name in TYPE_NAMES if name != "MESH_RESOURCE"]
 
 
 def marker_type(marker):

@@ -4,6 +4,7 @@ import numpy as np
 
 # How far a rotation's entries may be off: 0.707 for cos 45 degrees passes, as it does in ROS.
 TOLERANCE = 1e-3
+FARTHEST = 1e6  # metres; farther away, a graphics card's 32-bit numbers no longer tell decimetres apart
 
 
 def numbers(value, what, lengths=None):
@@ -71,6 +72,13 @@ def rigid_transform(matrix, what):
             " be +1. The axes are left-handed: one of them points the wrong way, or two are swapped."
         )
     return T
+
+
+def near(position, what):
+    """Return `position` (an array, in metres) if it can be drawn; raise ValueError for what is too far away."""
+    if np.abs(position).max(initial=0) > FARTHEST:
+        raise ValueError(f"{what} is too far away to be drawn: ({row_text(position)}). Are these metres?")
+    return position
 
 
 def row_text(values):

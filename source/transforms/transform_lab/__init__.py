@@ -6,12 +6,15 @@ On a robot, change the import lines and the rest of your code runs as it is:
     from std_msgs.msg import ColorRGBA, Header
     from visualization_msgs.msg import Marker
     import tf.transformations as tft
+    import rospy
 """
 
-from . import tft
+from . import rospy, tft, visualization_msgs
+from .animations import animate_approach, animate_chain, animate_inverse, animate_rotation
 from .check import check, once_done
 from .markers import arrow_marker, axis_marker
 from .messages import ColorRGBA, Header, Marker, Point, Pose, PoseStamped, Quaternion, Vector3
+from .plots import plot_columns, plot_from_above, plot_quaternion
 from .viewer import Viewer
 
 __all__ = [
@@ -24,9 +27,18 @@ __all__ = [
     "Quaternion",
     "Vector3",
     "Viewer",
+    "animate_approach",
+    "animate_chain",
+    "animate_inverse",
+    "animate_rotation",
     "arrow_marker",
     "axis_marker",
     "check",
     "once_done",
+    "plot_columns",
+    "plot_from_above",
+    "plot_quaternion",
+    "rospy",
     "tft",
+    "visualization_msgs",
 ]

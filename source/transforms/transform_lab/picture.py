@@ -12,8 +12,11 @@ DOTS_PER_INCH = 130
 LIGHT = np.array([0.3, 0.2, 0.95])  # in the camera's right, up and backward directions
 
 
-def render(nodes, grid, camera):
-    """Return the PNG (bytes) of `nodes` and the lines of the `grid` (Nx2x3, fixed frame), seen by `camera`."""
+def render(nodes, grid, camera, text=""):
+    """Return the PNG (bytes) of `nodes` and the lines of the `grid` (Nx2x3), seen by `camera`, all in the fixed frame.
+
+    `text` stands in the upper left.
+    """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.collections import LineCollection, PolyCollection
     from matplotlib.figure import Figure
@@ -23,19 +26,26 @@ def render(nodes, grid, camera):
     axes = figure.add_axes([0, 0, 1, 1], xlim=(0, camera.aspect), ylim=(0, 1))
     axes.set_axis_off()
 
-    axes.add_collection(LineCollection(camera.project(grid)[0], colors="#d8dce2", linewidths=0.7, zorder=0))
+    lines = camera.project(grid)[0]
+    axes.add_collection(LineCollection(lines[np.isfinite(lines).all(axis=(1, 2))], colors="#d8dce2", linewidths=0.7, zorder=0))
     polygons, colors, depths = [], [], []
     for node in nodes:
-        for part in [_solid(node, solid, camera) for solid in node.solids] + [
-            _cloud(node, cloud, camera) for cloud in node.clouds
-        ]:
-            for collected, values in zip((polygons, colors, depths), part):
-                collected.extend(values)
+        parts = [_solid(node, solid, camera) for solid in node.solids]
+        parts += [_cloud(node, cloud, camera) for cloud in node.clouds]
+        parts += [_mesh(node, mesh, camera) for mesh in node.meshes]
+        for places, shades, distances in parts:
+            shown = np.isfinite(places).all(axis=(1, 2))  # in front of the camera
+            polygons.extend(places[shown])
+            colors.extend(shades[shown])
+            depths.extend(distances[shown])
     order = np.argsort(depths)[::-1]  # what is nearer is painted later
     polygons, colors = np.reshape(polygons, (-1, 4, 2))[order], np.reshape(colors, (-1, 4))[order]
     edges = colors * [1, 1, 1, 0] + np.outer(colors[:, 3] == 1, [0, 0, 0, 1])  # close the seams, but of solid colours
     axes.add_collection(PolyCollection(polygons, facecolors=colors, edgecolors=edges, linewidths=0.3, zorder=1))
     _write(axes, nodes, camera)
+    if text:
+        axes.text(0.02, 0.98, text, family="monospace", fontsize=9, va="top", color="#222222", zorder=4,
+                  bbox={"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 2})  # fmt: skip
 
     file = io.BytesIO()
     figure.savefig(file, format="png")
@@ -56,7 +66,7 @@ def _write(axes, nodes, camera):
     from matplotlib.patheffects import withStroke
 
     line = 0.038  # height of a line, of the picture's height
-    labels = [(label, node.transform) for node in nodes for label in node.labels]
+    labels = [(label, node.transform) for node in nodes for label in node.labels if _in_view(label, node, camera)]
     taken = []  # centre, half width and half height of what is drawn, and how bad it is to cover that
     for label, transform in labels:
         marks = [1] if label.beside else [0.3, 0.6, 0.9]  # the thing named, or along the axis to its letter
@@ -76,8 +86,22 @@ def _write(axes, nodes, camera):
 
         x, y = min(candidates, key=badness_at)
         taken.append((x, y, half_width, half_height, 20 if label.beside else 5))
-        axes.text(x, y, label.text, color=label.color[:3], fontsize=10, fontweight="bold", ha="center", va="center",
-                  path_effects=[withStroke(linewidth=3, foreground="white")])  # fmt: skip
+        axes.text(x, y, label.text, color=label.color[:3], fontsize=_font_size(label, transform, camera),
+                  fontweight="bold", ha="center", va="center", path_effects=[withStroke(linewidth=3, foreground="white")])  # fmt: skip
+
+
+def _in_view(label, node, camera):
+    """Whether what a label names can be seen; where everything else has moved out of view, its name goes too."""
+    place = camera.project(node.transform[:3, :3] @ label.position + node.transform[:3, 3])[0]
+    return bool(((place > 0) & (place < [camera.aspect, 1])).all())
+
+
+def _font_size(label, transform, camera):
+    """Return the size in points of a label's text."""
+    if label.height is None:
+        return 10
+    depth = camera.project(transform[:3, :3] @ label.position + transform[:3, 3])[1]
+    return 72 * HEIGHT * label.height / (2 * camera.tangent * depth) / 0.72  # a capital is 0.72 of its font's size
 
 
 def _solid(node, solid, camera):
@@ -91,8 +115,7 @@ def _solid(node, solid, camera):
     normals *= outward[:, None]
     facing = ((camera.eye - centers) * normals).sum(axis=1) > 0
     faces, normals = faces[facing], normals[facing]
-    light = LIGHT @ [camera.right, camera.up, camera.back] / np.linalg.norm(LIGHT)
-    brightness = 0.62 + 0.38 * np.clip(normals @ light, 0, 1)
+    brightness = _brightness(normals, camera)
     colors = np.column_stack([np.outer(brightness, solid.color[:3]), np.full(len(faces), solid.color[3])])
     places, depths = camera.project(faces)
     return places, colors, depths.mean(axis=1)
@@ -104,6 +127,24 @@ def _cloud(node, cloud, camera):
     corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) @ [camera.right, camera.up] * cloud.size / 2
     places, depths = camera.project(points[:, None] + corners)
     return places, cloud.colors, depths.mean(axis=1)
+
+
+def _mesh(node, mesh, camera):
+    """Return the triangles of a mesh as polygons of four corners, as `_solid` does; both sides are seen."""
+    corners = mesh.corners @ node.transform[:3, :3].T + node.transform[:3, 3]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+    towards = np.sign(((camera.eye - corners.mean(axis=1)) * normals).sum(axis=1))
+    colors = mesh.colors.mean(axis=1)
+    colors[:, :3] *= _brightness(normals * towards[:, None], camera)[:, None]
+    places, depths = camera.project(corners[:, [0, 1, 2, 2]])
+    return places, colors, depths.mean(axis=1)
+
+
+def _brightness(normals, camera):
+    """Return how bright surfaces with these normals (Nx3) are, from 0 to 1."""
+    light = LIGHT @ [camera.right, camera.up, camera.back] / np.linalg.norm(LIGHT)
+    return 0.62 + 0.38 * np.clip(normals @ light, 0, 1)
 
 
 def _grid_of_faces(surface, across, along):

@@ -1,0 +1,75 @@
+"""The link between a scene in the kernel and the pages that show it, over the channel that Jupyter has anyway.
+
+The page (page.js) asks, live.js in the notebook's window passes it on, and the kernel answers with what has changed.
+"""
+
+import asyncio
+import time
+import uuid
+from pathlib import Path
+
+import anywidget
+import traitlets
+from IPython import get_ipython
+
+from .drawing import draw
+from .page import block, changes, labels, properties
+
+PERIOD = 1 / 40  # seconds; more often than a screen shows it, nothing needs to be sent
+
+
+def has_kernel():
+    """Whether this runs in a notebook's kernel, and not in a terminal or a script."""
+    return hasattr(get_ipython(), "kernel")
+
+
+class Channel(anywidget.AnyWidget):
+    """Runs live.js in the notebook's window. It is not displayed itself and keeps nothing but its name."""
+
+    _esm = Path(__file__).with_name("live.js").read_text(encoding="utf-8")
+    scene = traitlets.Unicode().tag(sync=True)
+
+
+class Link:
+    """Keeps the pages that show a viewer up to date: sends what differs from what was sent last."""
+
+    def __init__(self, viewer, drawing, length):
+        self.name = uuid.uuid4().hex
+        self._viewer, self._length = viewer, length
+        self._base = self._sent = properties(drawing.nodes)
+        self._last, self._later, self._busy = 0.0, None, False
+        self._channel = Channel(scene=self.name)
+        self._channel.on_msg(self._receive)
+
+    def refresh(self):
+        """Send the viewer's changes: at once, or together with those that follow within a 40th of a second."""
+        wait = self._last + PERIOD - time.monotonic()
+        if self._busy or self._later is not None:
+            return
+        if wait <= 0:
+            self._send(self._sent)
+        else:
+            self._later = asyncio.get_running_loop().call_later(wait, self._send, self._sent)
+
+    def _receive(self, _, message, __):
+        """Answer a page: one that has just been opened, or one whose controls have moved."""
+        if message.get("ready"):
+            self._send(self._base)
+        elif self._viewer._motion:
+            self._busy = True
+            try:
+                self._viewer._set(self._viewer._motion.at(message["values"]))
+            finally:
+                self._busy = False
+            self._send(self._sent)
+
+    def _send(self, old):
+        """Send what differs from the properties `old`."""
+        if self._later is not None:
+            self._later.cancel()
+            self._later = None
+        drawing = draw(self._viewer, self._length, self._viewer._at)
+        self._sent = properties(drawing.nodes)
+        self._last = time.monotonic()
+        words = {"labels": labels(drawing.nodes), "text": drawing.text}
+        self._channel.send(words, [block(changes(old, self._sent))])

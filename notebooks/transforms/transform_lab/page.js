@@ -1,0 +1,273 @@
+// Shows a scene in meshcat's viewer: its labels, fixed frame and camera, its animation or its controls. page.py puts it
+// into each page behind meshcat's own script.
+
+function showScene(buffer) {
+  const [[told], base, ...states] = blocks(buffer), view = JSON.parse(new TextDecoder().decode(told));
+  const pane = document.getElementById("pane"), bar = document.getElementById("bar");
+  const viewer = window.viewer = new MeshCat.Viewer(pane);
+  viewer.gui.domElement.style.display = "none";
+  const resize = viewer.set_3d_pane_size.bind(viewer);
+  viewer.set_3d_pane_size = () => resize(pane.clientWidth, pane.clientHeight);  // and not as high as the window
+  const run = packets => packets.forEach(packet => viewer.handle_command_bytearray(packet));
+  const object = path => viewer.scene_tree.find(path.split("/")).object;
+  run(base);
+
+  // Where everything stands: all is drawn in the root frame, and the root stands so that the fixed frame is the world.
+  let fixed = view.frames[view.fixed];
+  const root = object("meshcat");
+  function settle() {
+    const frame = object(fixed.path);
+    frame.updateMatrix();
+    frame.matrix.clone().invert().decompose(root.position, root.quaternion, root.scale);
+    view.frames.forEach((other, i) => object(`grid${i}`).visible = other === fixed);
+    viewer.set_dirty();
+  }
+
+  // The camera. three.js has y up: x, y, z of the fixed frame are x, -z, y there.
+  viewer.camera.fov = view.fov;
+  viewer.controls.screenSpacePanning = true;
+  function look(name) {
+    const [eye, target, distance] = fixed.cameras[name];
+    viewer.camera.near = distance / 100;
+    viewer.camera.far = distance * 100;
+    viewer.camera.position.set(eye[0], eye[2], -eye[1]);
+    viewer.controls.target.set(target[0], target[2], -target[1]);
+    viewer.camera.updateProjectionMatrix();
+    viewer.controls.update();
+    viewer.set_dirty();
+  }
+  // The wheel scrolls the notebook until the scene is clicked.
+  viewer.controls.enableZoom = false;
+  pane.addEventListener("pointerdown", () => viewer.controls.enableZoom = true);
+  document.documentElement.addEventListener("mouseleave", () => viewer.controls.enableZoom = false);
+
+  // Words: the labels beside what they name, and the text in the corner.
+  const text = document.getElementById("text");
+  let labels = [];
+  function say({labels: found, text: words}) {
+    text.textContent = words ?? "";
+    if (!found) return;
+    labels.forEach(label => label.element.remove());
+    labels = found.map(label => {
+      const element = document.createElement("div");
+      element.className = "label";
+      element.textContent = label.text;
+      element.style.color = label.color;
+      pane.append(element);
+      return {...label, element};
+    });
+  }
+  const render = viewer.render.bind(viewer);
+  viewer.render = () => { render(); placeLabels(labels, viewer, pane, view, object); };
+
+  // A state between two: 2.3 is three tenths of the way from the third to the fourth.
+  const poses = states.map((packets, k) => {
+    run(packets);
+    return new Map(view.states[k].moving.map(i => {
+      const {position, quaternion, scale} = object(view.moving[i]);
+      return [view.moving[i], {position: position.clone(), quaternion: quaternion.clone(), scale: scale.clone()}];
+    }));
+  });
+  let shown = null;
+  function show(t) {
+    const k = Math.min(Math.floor(t), states.length - 1), next = poses[k + 1];
+    if (k !== shown) run(states[k]);
+    for (const [path, pose] of poses[k]) {
+      const here = object(path), to = next?.get(path);
+      for (const part of ["position", "quaternion", "scale"]) here[part].copy(pose[part]);
+      if (!to) continue;
+      here.position.lerp(to.position, t - k);
+      here.quaternion.slerp(to.quaternion, t - k);
+      here.scale.lerp(to.scale, t - k);
+    }
+    const nearest = Math.min(Math.round(t), states.length - 1);
+    if (k !== shown || text.textContent !== view.states[nearest].text) {
+      say({labels: view.states[k].labels ?? view.labels, text: view.states[nearest].text});
+    }
+    shown = k;
+    settle();
+  }
+
+  // The bar below.
+  const row = () => bar.appendChild(document.createElement("div"));
+  const choice = (into, title, names, chosen, change) => {
+    const select = document.createElement("select");
+    names.forEach((name, i) => select.add(new Option(name, i, false, name === chosen)));
+    select.addEventListener("change", () => change(names[select.value]));
+    labelled(into, title, select);
+    return select;
+  };
+  const first = row();
+  let seenFrom = view.seenFrom;
+  choice(first, "Fixed frame", view.frames.map(frame => frame.name), fixed.name, name => {
+    fixed = view.frames.find(frame => frame.name === name);
+    settle();
+    look(seenFrom);
+  });
+  choice(first, "Seen from", Object.keys(fixed.cameras), seenFrom, name => look(seenFrom = name));
+  bar.addEventListener("submit", event => event.preventDefault());
+
+  say(view);
+  if (states.length) show(view.start);
+  if (view.seconds) addPlayer(row(), states.length - 1, view.seconds, show);
+  if (view.controls.length || view.live) addControls(view, row, choice, show, change => {
+    run(blocks(change.packets)[0]);
+    say(change);
+    settle();
+  });
+  viewer.set_3d_pane_size();
+  settle();
+  look(seenFrom);
+  viewer.render();
+  document.body.style.background = "white";
+  // A browser keeps some 16 scenes and drops the oldest; that one comes back when it is wanted.
+  viewer.renderer.domElement.addEventListener("webglcontextlost", () => {
+    pane.style.visibility = "hidden";
+    document.body.style.background = "none";
+    document.documentElement.addEventListener("mouseenter", () => location.reload(), {once: true});
+  });
+}
+
+// A sequence of lists of packets, each list and each packet behind its length.
+function blocks(buffer) {
+  const numbers = new DataView(buffer), found = [];
+  let at = 0;
+  const next = () => numbers.getUint32((at += 4) - 4);
+  while (at < buffer.byteLength) {
+    found.push(Array.from({length: next()}, () => {
+      const size = next();
+      return new Uint8Array(buffer, (at += size) - size, size);
+    }));
+  }
+  return found;
+}
+
+function labelled(into, title, ...elements) {
+  const label = into.appendChild(document.createElement("label"));
+  label.append(title, ...elements);
+  return label;
+}
+
+// First the labels that have a fixed place, then the others where they cover least.
+function placeLabels(labels, viewer, pane, view, object) {
+  const width = pane.clientWidth, height = pane.clientHeight, project = (label, along) => {
+    const p = viewer.camera.position.clone().set(...label.position).multiplyScalar(along);
+    p.applyMatrix4(object(label.path).matrixWorld);
+    const depth = -p.clone().applyMatrix4(viewer.camera.matrixWorldInverse).z;
+    p.project(viewer.camera);
+    return {x: (p.x + 1) / 2 * width, y: (1 - p.y) / 2 * height, depth};
+  };
+  const taken = [];  // centre, half width and half height of what is drawn, and how bad it is to cover that
+  for (const label of labels) {
+    const marks = label.beside ? [1] : [0.3, 0.6, 0.9];  // the thing named, or along the axis to its letter
+    for (const along of marks) taken.push({...project(label, along), w: 4, h: 4, bad: 1});
+  }
+  for (const label of labels) {
+    const {x, y, depth} = project(label, 1), style = label.element.style;
+    if (label.height) {  // of a capital letter, in metres
+      style.fontSize = `${label.height / 0.72 * height / (2 * depth * Math.tan(view.fov / 360 * Math.PI))}px`;
+    }
+    const w = label.element.offsetWidth / 2, h = label.element.offsetHeight / 2;
+    let best = {bad: Infinity};
+    for (const [right, up] of label.beside ? view.beside : [[0, 0]]) {
+      const place = {x: x + right * w, y: y - up * 2 * h, w, h, bad: 0};
+      if (Math.min(place.x, width - place.x) < w || Math.min(place.y, height - place.y) < h) place.bad += 20;
+      for (const t of taken) {
+        if (Math.abs(place.x - t.x) < w + t.w && Math.abs(place.y - t.y) < h + t.h) place.bad += t.bad;
+      }
+      if (place.bad < best.bad) best = place;
+    }
+    const outside = depth < viewer.camera.near || x < 0 || y < 0 || x > width || y > height;
+    style.visibility = outside ? "hidden" : "visible";
+    style.transform = `translate(${best.x - w}px, ${best.y - h}px)`;
+    if (!outside) taken.push({...best, bad: label.beside ? 20 : 5});
+  }
+}
+
+// Play, pause, and a slider that shows the way from the first state to the last.
+function addPlayer(row, last, seconds, show) {
+  const button = row.appendChild(document.createElement("button")), slider = document.createElement("input");
+  Object.assign(slider, {type: "range", min: 0, max: last, step: "any", value: last, className: "wide"});
+  slider.setAttribute("aria-label", "Time");
+  slider.style.flex = 1;
+  row.append(slider);
+  let before = null;
+  const title = () => button.textContent = before === null ? "▶ Play" : "❚❚ Pause";
+  function step(now) {
+    if (before === null) return;
+    slider.value = Math.min(last, +slider.value + (now - before) / 1000 / seconds * last);
+    before = +slider.value < last ? now : null;
+    show(+slider.value);
+    before === null ? title() : requestAnimationFrame(step);
+  }
+  button.type = "button";
+  button.addEventListener("click", () => {
+    if (before === null && +slider.value >= last) slider.value = 0;
+    before = before === null ? performance.now() : null;
+    title();
+    requestAnimationFrame(step);
+  });
+  slider.addEventListener("input", () => { before = null; title(); show(+slider.value); });
+  title();
+}
+
+// Sliders, drop-downs and check boxes. The kernel computes what they show while it listens; where there is none, in a
+// saved notebook, it is shown from the states that were computed beforehand.
+function addControls(view, row, choice, show, change) {
+  const values = view.controls.map(control => control.value);  // the place of each in its list of values
+  let heard = false, waiting = null, moves = 0, asked = 0;
+  const post = message => {
+    if (window.parent !== window) window.parent.postMessage({scene: view.live, from: "page", message}, "*");
+  };
+  function moved() {
+    if (heard && waiting === null) ask();
+    else if (!heard || performance.now() - waiting > 1000) showState();
+  }
+  function ask() {  // one question at a time, so that no queue builds up
+    waiting = performance.now();
+    asked = moves;
+    post({values});
+  }
+  function showState() {
+    if (!view.states.length) return note.hidden = false;
+    let state = 0;
+    view.controls.forEach((control, i) => {  // the nearest of those computed
+      const places = control.places, to = places.reduce((best, place, j) =>
+        Math.abs(place - values[i]) < Math.abs(places[best] - values[i]) ? j : best, 0);
+      state = state * places.length + to;
+    });
+    show(state);
+  }
+  view.controls.forEach((control, i) => {
+    const into = row();
+    const set = place => { values[i] = place; moves++; moved(); };
+    if (control.kind === "slider") {
+      const slider = document.createElement("input"), output = document.createElement("output");
+      Object.assign(slider, {type: "range", min: 0, max: control.values.length - 1, value: values[i]});
+      slider.name = control.name;
+      const write = () => {
+        output.textContent = control.values[slider.value];
+        slider.setAttribute("aria-valuetext", output.textContent);
+      };
+      slider.addEventListener("input", () => { write(); set(+slider.value); });
+      write();
+      labelled(into, control.name, slider, output).className = "wide";
+    } else {
+      const chosen = control.values[control.value];
+      choice(into, control.name, control.values, chosen, value => set(control.values.indexOf(value))).name = control.name;
+    }
+  });
+  const note = Object.assign(document.createElement("em"), {textContent: "Run the cell to move this.", hidden: true});
+  if (view.controls.length) document.getElementById("bar").lastChild.append(note);
+  if (!view.live) return;
+  window.addEventListener("message", ({data}) => {
+    if (data?.scene !== view.live || data.from !== "kernel") return;
+    if (data.message.hello) return post({ready: true});
+    heard = true;
+    note.hidden = true;
+    waiting = null;
+    change({...data.message, packets: data.packets});
+    if (moves !== asked) ask();
+  });
+  post({ready: true});
+}

@@ -1,0 +1,128 @@
+"""What is better seen flat: a rotation's columns, a quaternion against its angle, a scene from above.
+
+Made with Matplotlib, in the colours of the viewer. Each function draws into `ax`, or into a new figure, and returns the
+axes, so that more can be drawn into them.
+"""
+
+import math
+
+import numpy as np
+
+from .shapes import DARK, X_RED, Y_GREEN, Z_BLUE
+from .validation import numbers
+
+__all__ = ["plot_columns", "plot_from_above", "plot_quaternion"]
+
+
+def plot_columns(a_R_b, ax=None):
+    """Draw the x and y axes of frame B, the first two columns of `a_R_b` (3x3), seen from above on frame A.
+
+    Frame A is drawn pale. Raises ValueError if it is no 3x3 matrix of numbers.
+    """
+    R = numbers(a_R_b, "plot_columns: a_R_b")
+    if R.shape != (3, 3):
+        raise ValueError(f"plot_columns: a_R_b must be a 3x3 matrix; got shape {R.shape}")
+    ax = ax or _new_axes(4, 4)
+    for axes, opacity, of in ((np.eye(3), 0.3, "A"), (R, 1, "B")):
+        for i, (letter, color) in enumerate((("x", X_RED), ("y", Y_GREEN))):
+            _arrow(ax, (0, 0), axes[:2, i], color, opacity, f"{letter} of {of}")
+    reach = max(1, np.abs(R[:2, :2]).max()) * 1.4
+    ax.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
+    ax.set(xlabel="x of A", ylabel="y of A", title="Frame B on frame A, from above")
+    return ax
+
+
+def plot_quaternion(axis=(0, 0, 1), ax=None):
+    """Draw the four numbers x, y, z, w of a turn about `axis` (3 numbers) against its angle, from 0 to 720 degrees.
+
+    Source: q = (u sin(angle / 2), cos(angle / 2)) for the unit vector u along the axis.
+    """
+    direction = numbers(axis, "plot_quaternion: the axis", lengths=(3,))
+    if not direction.any():
+        raise ValueError("plot_quaternion: the axis must not be 0, 0, 0")
+    direction /= np.linalg.norm(direction)
+    ax = ax or _new_axes(7, 3.5)
+    degrees = np.arange(0, 721, 5)
+    half = np.radians(degrees) / 2
+    styles = zip("xyz", direction, (X_RED, Y_GREEN, Z_BLUE), ("--", "-.", "-"), (3, 2, 1.5))
+    for letter, part, color, style, width in styles:
+        ax.plot(degrees, part * np.sin(half), style, color=color, linewidth=width, label=letter)
+    ax.plot(degrees, np.cos(half), ":", color=DARK, linewidth=2.5, label="w")
+    ax.set(xticks=range(0, 721, 90), xlabel="angle in degrees", ylim=(-1.1, 1.1))
+    ax.set(title=f"Quaternion of a turn about ({', '.join(f'{n:.3g}' for n in direction)})")
+    ax.legend(loc="center left", bbox_to_anchor=(1, 0.5), frameon=False)
+    return ax
+
+
+def plot_from_above(viewer, at=None, ax=None):
+    """Draw a Viewer's scene flat: x of the fixed frame to the right, y up, in metres.
+
+    Of each frame the x and y axes are drawn, as far as they lie in the plane; of boxes and grippers the outline. `at` is a
+    list of the names to have in the picture; by default all are.
+    """
+    from .drawing import draw_all, in_frame
+
+    ax = ax or _new_axes(6, 4.5)
+    ax.set_aspect("equal")
+    (drawing,), length = draw_all([viewer.copy()], at)
+    nodes = in_frame(drawing.nodes, drawing.frames[viewer.fixed_frame])
+    for node in nodes:
+        kind = node.path.partition("/")[0]
+        if kind in ("boxes", "grippers"):
+            for solid in node.solids:
+                _outline(ax, node.transform @ solid.matrix, solid.color)
+    for name, frame in viewer.frames.items():
+        T = viewer.lookup(viewer.fixed_frame, name)
+        if at is not None and name not in at:
+            continue
+        for i, color in enumerate((X_RED, Y_GREEN)):
+            _arrow(ax, T[:2, 3], (frame.length or length) * T[:2, i], color, 0.35 if frame.ghost else 1)
+        _name(ax, name, T[:2, 3])
+    for name, point in viewer.points.items():
+        if at is None or name in at:
+            T = viewer.lookup(viewer.fixed_frame, point.frame)
+            place = T[:2, :3] @ point.position + T[:2, 3]
+            ax.plot(*place, "o", color=point.color[:3])
+            _name(ax, name, place)
+    seen = drawing.seen_from(viewer.fixed_frame)[:, :2]
+    margin = 0.12 * max(np.ptp(seen, axis=0).max(), 1e-6)
+    (left, bottom), (right, top) = seen.min(axis=0) - margin, seen.max(axis=0) + margin
+    ax.set(xlim=(left, right), ylim=(bottom, top))
+    ax.set(xlabel=f"x of {viewer.fixed_frame}", ylabel=f"y of {viewer.fixed_frame}", title="From above")
+    ax.grid(color="#e4e7eb")
+    ax.set_axisbelow(True)
+    return ax
+
+
+def _new_axes(width, height):
+    import matplotlib.pyplot as plt
+
+    figure, ax = plt.subplots(figsize=(width, height), layout="constrained")
+    ax.grid(color="#e4e7eb")
+    ax.set_axisbelow(True)
+    return ax
+
+
+def _arrow(ax, tail, along, color, opacity=1, name=""):
+    """Draw an arrow; one that points at us or away is a dot."""
+    tail, along = np.asarray(tail, float), np.asarray(along, float)
+    if math.hypot(*along) < 1e-9:
+        ax.plot(*tail, ".", color=color[:3], alpha=opacity)
+        return
+    style = {"arrowstyle": "-|>", "color": color[:3], "alpha": opacity, "linewidth": 2.5, "mutation_scale": 14}
+    ax.annotate("", tail + along, tail, arrowprops={**style, "shrinkA": 0, "shrinkB": 0})
+    if name:
+        ax.text(*(tail + 1.17 * along), name, color=color[:3], alpha=max(opacity, 0.6), ha="center", va="center")
+
+
+def _outline(ax, matrix, color):
+    """Draw the outline of a unit box moved by `matrix`."""
+    from scipy.spatial import ConvexHull
+
+    corners = np.array([[x, y, z, 1] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+    flat = (corners @ matrix.T)[:, :2]
+    ax.fill(*flat[ConvexHull(flat).vertices].T, facecolor=(*color[:3], 0.35 * color[3]), edgecolor=color[:3])
+
+
+def _name(ax, name, place):
+    ax.annotate(name, place, xytext=(5, -12), textcoords="offset points", color=DARK, fontweight="bold")

@@ -1,0 +1,124 @@
+"""The part of rospy that the lab's script uses, without ROS: what a node publishes is drawn, as RViz draws it.
+
+In a notebook the markers appear below the cell that published them. A plain Python script writes one page when it ends,
+named after its node, to be opened in a browser.
+"""
+
+import atexit
+import sys
+import time
+from pathlib import Path
+
+from .messages import Marker
+from .viewer import Viewer
+
+__all__ = ["Publisher", "Time", "init_node", "is_shutdown", "loginfo", "logwarn", "sleep"]
+
+
+class _Node:
+    """What is published, in one viewer whose fixed frame is that of the first marker; and where it is to appear."""
+
+    def __init__(self):
+        self.name, self.viewer, self.shown, self.watching = "rviz", None, True, False
+
+    def publish(self, marker):
+        if self.viewer is None:
+            self.viewer = Viewer(marker.header.frame_id or "map")
+        self.viewer.publish(marker)
+        self.shown = False
+        self.watch()
+
+    def watch(self):
+        """See to it that what was published is shown at the end of the cell, or of the script."""
+        if self.watching:
+            return
+        shell = _shell()
+        if shell:
+            shell.events.register("post_run_cell", lambda *_: self.show())
+        else:
+            atexit.register(self.write)
+        self.watching = True
+
+    def show(self):
+        if not self.shown:
+            self.shown = True
+            self.viewer.show()
+
+    def write(self):
+        path = Path(f"{self.name}.html")
+        path.write_text(self.viewer.html(), encoding="utf-8")
+        print(f"{path}: open it in a browser to see what was published.")
+
+
+_node = _Node()
+
+
+def _shell():
+    """Return IPython's shell where there is one; a plain script has none."""
+    if "IPython" not in sys.modules:
+        return None
+    from IPython import get_ipython
+
+    return get_ipython()
+
+
+def init_node(name, **options):
+    """Start the node `name` (a text without slashes or spaces) with an empty view; `options` have no effect here."""
+    if not name or not name.replace("_", "").isalnum():
+        raise ValueError(f"init_node: a node's name is made of letters, digits and _; got {name!r}")
+    _node.name, _node.viewer, _node.shown = name, None, True
+
+
+class Publisher:
+    """Publishes markers to the view below the cell. The topic's name has no effect here."""
+
+    def __init__(self, name, data_class, **options):
+        if data_class is not Marker:
+            raise TypeError(f"Publisher: only Marker messages can be seen here; got {data_class.__name__}")
+
+    def publish(self, marker):
+        """Draw a Marker as RViz does. The first one's header.frame_id becomes the fixed frame.
+
+        Raises ValueError for a frame that is not known and for what cannot be drawn, as Viewer.publish does.
+        """
+        _node.publish(marker)
+
+
+class Time:
+    """A moment, in seconds since 1970; there is no simulated time here."""
+
+    def __init__(self, seconds=0.0):
+        self._seconds = float(seconds)
+
+    @staticmethod
+    def now():
+        """Return the present Time."""
+        return Time(time.time())
+
+    def to_sec(self):
+        """Return the moment in seconds."""
+        return self._seconds
+
+
+def sleep(duration):
+    """Wait for `duration` seconds."""
+    time.sleep(duration)
+
+
+def loginfo(message, *args):
+    """Print a message as rospy does; with `args`, it is a template as for the % operator."""
+    _log("INFO", message, args)
+
+
+def logwarn(message, *args):
+    """Print a warning as rospy does; with `args`, it is a template as for the % operator."""
+    _log("WARN", message, args)
+
+
+def _log(level, message, args):
+    print(f"[{level}] [{time.time():.6f}]: {str(message) % args if args else message}")
+
+
+def is_shutdown():
+    """Return False: a notebook's node is never shut down."""
+    return False

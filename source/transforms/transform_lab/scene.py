@@ -1,0 +1,310 @@
+"""What there is to see: a tree of named frames, and the points, arrows, boxes, grippers and markers given in them."""
+
+import copy
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import tft
+from .messages import Marker
+from .shapes import BROWN, ORANGE, PURPLE, STEEL, Node, draw_marker, marker_type, rgba, xyz
+from .validation import FARTHEST, near, numbers, rigid_transform, row_text
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """A frame: `transform` is parent_T_frame (4x4); `length` of the axes in metres, None for one that fits the scene."""
+
+    parent: str | None
+    transform: np.ndarray
+    length: float | None = None
+    ghost: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """A point at `position` (3 numbers) in `frame`."""
+
+    frame: str
+    position: np.ndarray
+    color: tuple
+    ghost: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Arrow:
+    """An arrow from `tail` to `tip` (3 numbers each) in `frame`."""
+
+    frame: str
+    tail: np.ndarray
+    tip: np.ndarray
+    color: tuple
+    ghost: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Box:
+    """A box whose middle is at `transform` (frame_T_box, 4x4), of `size` (3 numbers) along its own axes."""
+
+    frame: str
+    transform: np.ndarray
+    size: np.ndarray
+    color: tuple
+    ghost: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Gripper:
+    """A parallel-jaw gripper: fingers along the x axis of `frame`, `opening` metres apart along y."""
+
+    frame: str
+    opening: float
+    color: tuple
+    ghost: bool = False
+
+
+class Scene:
+    """Frames in a tree, as TF keeps them, and what is given in these frames; all lengths are in metres."""
+
+    def __init__(self, fixed_frame="world", ghost=False):
+        self.root = fixed_frame
+        self.frames = {fixed_frame: Frame(None, np.eye(4), ghost=ghost)}
+        self.points, self.arrows, self.boxes, self.grippers, self.markers = {}, {}, {}, {}, {}
+        self.text = ""
+        self._fixed_frame = fixed_frame
+
+    def copy(self):
+        """Return a Scene of the same things; what is added to the one does not show in the other."""
+        other = Scene(self.root)
+        for name, value in vars(other).items():
+            setattr(other, name, copy.copy(getattr(self, name)) if isinstance(value, dict) else getattr(self, name))
+        return other
+
+    @property
+    def fixed_frame(self):
+        """The frame in which the scene is drawn and looked at; any known frame can be made the fixed one."""
+        return self._fixed_frame
+
+    @fixed_frame.setter
+    def fixed_frame(self, name):
+        self._fixed_frame = self._known(name, "fixed_frame: the frame")
+        self._changed()
+
+    # Filling the scene
+
+    def add_frame(self, name, transform, parent=None, length=None, ghost=False):
+        """Add the frame `name`, or replace it: `transform` describes it in the frame `parent`.
+
+        `transform` is a 4x4 homogeneous transform parent_T_name, a Pose, or a PoseStamped, whose header.frame_id then
+        is the parent. The parent must be known; by default it is the frame that the viewer was made with. `length` is
+        how long the axes are drawn, in metres; by default the size of the scene decides. A `ghost` is translucent.
+
+        Raises ValueError for a parent that is not known, and for what is no rigid transform, naming the property that
+        fails: shape, NaN, bottom row, columns at right angles and of length 1, determinant +1, quaternion of length 1.
+        """
+        what = f"add_frame({name!r})"
+        if name == self.root:
+            raise ValueError(f"{what}: {name!r} is the frame this viewer was made with; the others are described in it")
+        parent, matrix = self._placed(parent, transform, what, "parent")
+        ancestor = parent
+        while ancestor is not None:
+            if ancestor == name:
+                raise ValueError(f"{what}: {parent!r} is itself described in {name!r}; that is a circle")
+            ancestor = self.frames[ancestor].parent
+        if length is not None and not 0 < length <= FARTHEST:
+            raise ValueError(f"{what}: length must be above 0; got {length!r}")
+        self.frames[name] = Frame(parent, matrix, length, ghost)
+        self._changed()
+
+    def add_point(self, name, position, frame=None, color=ORANGE, ghost=False):
+        """Add the point `name`, or replace it: `position` is a Point or 3 numbers in `frame`.
+
+        By default the frame is the one that the viewer was made with. Four numbers are taken as homogeneous
+        coordinates. `color` is a ColorRGBA, or 3 or 4 numbers from 0 to 1. A `ghost` is translucent, and larger.
+        """
+        frame = self._known(frame, f"add_point({name!r}): the frame")
+        position = _position(position, f"add_point({name!r}): the position")
+        self.points[name] = Point(frame, position, rgba(color), ghost)
+        self._changed()
+
+    def add_arrow(self, name, tip, tail=(0, 0, 0), frame=None, color=PURPLE, ghost=False):
+        """Add the arrow `name`, or replace it: from `tail` to `tip`, each a Point or 3 numbers in `frame`.
+
+        By default it starts at the origin of the frame; `frame`, `color` and `ghost` as in `add_point`.
+        """
+        frame = self._known(frame, f"add_arrow({name!r}): the frame")
+        tail, tip = (_position(p, f"add_arrow({name!r}): the {end}") for p, end in ((tail, "tail"), (tip, "tip")))
+        self.arrows[name] = Arrow(frame, tail, tip, rgba(color), ghost)
+        self._changed()
+
+    def add_box(self, name, size, pose=None, frame=None, color=BROWN, ghost=False):
+        """Add the box `name`, or replace it: `size` is 3 numbers, in metres along its own x, y and z axes.
+
+        Its middle is at `pose` in `frame`: a Pose, a PoseStamped or a 4x4 transform, by default the frame's origin.
+        `frame`, `color` and `ghost` as in `add_point`.
+        """
+        what = f"add_box({name!r})"
+        frame, matrix = self._placed(frame, np.eye(4) if pose is None else pose, what, "frame")
+        size = numbers(size, f"{what}: the size", lengths=(3,))
+        if not (size > 0).all():
+            raise ValueError(f"{what}: the size must be three numbers above 0; got {row_text(size)}")
+        self.boxes[name] = Box(frame, matrix, size, rgba(color), ghost)
+        self._changed()
+
+    def add_gripper(self, frame, opening=0.08, color=STEEL, ghost=False):
+        """Draw a parallel-jaw gripper on `frame`, which must be known: its fingers lie along the frame's x axis.
+
+        The fingers are `opening` metres apart along y; the origin lies between their tips. The gripper's other sizes
+        go with the opening. `color` and `ghost` as in `add_point`.
+        """
+        frame = self._known(frame, f"add_gripper({frame!r}): the frame")
+        if not 0 < opening <= FARTHEST:
+            raise ValueError(f"add_gripper({frame!r}): opening must be above 0; got {opening!r}")
+        self.grippers[frame] = Gripper(frame, opening, rgba(color), ghost)
+        self._changed()
+
+    def publish(self, marker):
+        """Draw a visualization_msgs/Marker, as publishing it to RViz does; the same ns and id replace each other.
+
+        `marker.action` may also delete the marker with this ns and id (DELETE) or all markers (DELETEALL). The marker
+        is copied. As in RViz, an orientation of 0, 0, 0, 0 is taken for no rotation, and color.a = 0 is invisible.
+        `lifetime` and `frame_locked` have no effect: nothing here goes away or moves by itself.
+
+        Raises ValueError if header.frame_id is not known, for a size of 0, and for a type that is not drawn.
+        """
+        key = (marker.ns, marker.id)
+        if marker.action == Marker.DELETEALL:
+            self.markers.clear()
+        elif marker.action == Marker.DELETE:
+            self.markers.pop(key, None)
+        elif marker.action == Marker.ADD:
+            self._known(marker.header.frame_id, f"marker {marker_name(marker)}: header.frame_id")
+            draw_marker(marker, Node("", marker_pose(marker)))  # raises now, not when the scene is shown
+            self.markers[key] = copy.deepcopy(marker)
+        else:
+            raise ValueError(f"marker {marker_name(marker)}: action must be ADD, DELETE or DELETEALL")
+        self._changed()
+
+    # Asking
+
+    def lookup(self, target_frame, source_frame):
+        """Return the 4x4 transform target_T_source: `source_frame` described in `target_frame`.
+
+        Raises ValueError for a frame that is not known, naming those that are.
+        """
+        target = self.in_root(self._known(target_frame, "lookup: the target frame"))
+        source = self.in_root(self._known(source_frame, "lookup: the source frame"))
+        return tft.inverse_matrix(target) @ source
+
+    def in_root(self, name):
+        """Return the 4x4 transform of a known frame in the frame that the viewer was made with."""
+        frame = self.frames[name]
+        return np.eye(4) if frame.parent is None else self.in_root(frame.parent) @ frame.transform
+
+    def description(self):
+        """Return the scene in words: each frame with its parent, position and axes, then all the rest."""
+        lines = [f"Scene in the fixed frame {self.fixed_frame} (metres)"]
+        for name, frame in self.frames.items():
+            if frame.parent is not None:
+                x, y, z = (f"({row_text(frame.transform[:3, i])})" for i in range(3))
+                lines.append(
+                    f"frame {name} in {frame.parent}: position ({row_text(frame.transform[:3, 3])}),"
+                    f" x axis {x}, y axis {y}, z axis {z}"
+                )
+        for name, point in self.points.items():
+            lines.append(f"point {name} in {point.frame}: ({row_text(point.position)})")
+        for name, arrow in self.arrows.items():
+            lines.append(f"arrow {name} in {arrow.frame}: from ({row_text(arrow.tail)}) to ({row_text(arrow.tip)})")
+        for name, box in self.boxes.items():
+            where = row_text(box.transform[:3, 3])
+            lines.append(f"box {name} in {box.frame}: middle ({where}), {' x '.join(f'{v:.4g}' for v in box.size)} m")
+        for gripper in self.grippers.values():
+            lines.append(f"gripper on {gripper.frame}: opening {gripper.opening:.4g} m")
+        lines += [_describe_marker(marker) for marker in self.markers.values()]
+        return "\n".join(lines + ([self.text] if self.text else []))
+
+    # For the above
+
+    def _changed(self):
+        """Called after each change; a Viewer passes it on to those who watch."""
+
+    def _known(self, name, what):
+        """Return `name` (the root for None) if it is a frame of the scene; else raise ValueError with `what`."""
+        if name is None:
+            return self.root
+        if name in self.frames:
+            return name
+        raise ValueError(f"{what} {name!r} is not known. Known frames: {', '.join(self.frames)}")
+
+    def _placed(self, frame, pose, what, kind):
+        """Return the known frame in which `pose` (4x4, Pose, PoseStamped) is given, and the 4x4 matrix."""
+        if hasattr(pose, "header"):
+            if frame not in (None, pose.header.frame_id):
+                raise ValueError(f"{kind}={frame!r}, but header.frame_id is {pose.header.frame_id!r}")
+            frame, pose = pose.header.frame_id, pose.pose
+        frame = self._known(frame, f"{what}: the {kind}")
+        if hasattr(pose, "orientation"):
+            matrix = _pose_matrix(pose, f"{what}: the pose")
+        else:
+            matrix = rigid_transform(pose, f"{what}: the transform")
+        near(matrix[:3, 3], f"{what}: the translation")
+        return frame, matrix
+
+
+def _position(value, what):
+    """Return the three coordinates of a Point, of 3 numbers, or of 4 homogeneous ones."""
+    if hasattr(value, "x"):
+        return xyz(value)
+    coordinates = numbers(value, what, lengths=(3, 4))
+    if len(coordinates) == 4 and coordinates[3] != 1:
+        raise ValueError(f"{what} has four numbers, so the last must be 1; it is {coordinates[3]:g}")
+    return near(coordinates[:3], what)
+
+
+def _pose_matrix(pose, what):
+    """Return the 4x4 matrix of a Pose whose orientation has length 1; `what` starts the error messages."""
+    q, p = pose.orientation, pose.position
+    for value, names in ((q, "xyzw"), (p, "xyz")):
+        if not all(hasattr(value, name) for name in names):
+            field, kind = ("orientation", "Quaternion") if value is q else ("position", "Point")
+            raise TypeError(f"{what} has a {type(value).__name__} as its {field}; that must be a {kind}")
+    quaternion = numbers([q.x, q.y, q.z, q.w], f"{what}'s orientation", lengths=(4,))
+    length = np.linalg.norm(quaternion)
+    if abs(length - 1) > 1e-3:
+        advice = " A fresh Quaternion() is no orientation; no rotation is 0, 0, 0, 1." if length == 0 else ""
+        raise ValueError(f"{what}'s orientation must be a quaternion of length 1; its length is {length:.4g}.{advice}")
+    matrix = tft.quaternion_matrix(quaternion)
+    matrix[:3, 3] = numbers([p.x, p.y, p.z], f"{what}'s position", lengths=(3,))
+    return matrix
+
+
+def marker_pose(marker):
+    """Return the 4x4 matrix of a marker's pose; an orientation of zeros, a fresh one, is no rotation, as in RViz."""
+    q, what = marker.pose.orientation, f"marker {marker_name(marker)}: the pose"
+    if any(getattr(q, name, 1) for name in "xyzw"):
+        matrix = _pose_matrix(marker.pose, what)
+    else:
+        matrix = tft.translation_matrix(xyz(marker.pose.position))
+    near(matrix[:3, 3], f"{what}'s position")
+    return matrix
+
+
+def marker_name(marker):
+    """Return how a marker is called in messages: its namespace and its id."""
+    return f"{marker.ns}/{marker.id}"
+
+
+def _describe_marker(marker):
+    """Return one line about a marker."""
+    pose = marker_pose(marker)
+    text = f"marker {marker_name(marker)} in {marker.header.frame_id}: {marker_type(marker)} at"
+    text += f" ({row_text(pose[:3, 3])}), x axis ({row_text(pose[:3, 0])}), y axis ({row_text(pose[:3, 1])})"
+    if marker.type in (Marker.ARROW, Marker.LINE_LIST, Marker.LINE_STRIP) and 0 < len(marker.points) <= 6:
+        text += ", points " + " ".join(f"({row_text(xyz(p))})" for p in marker.points)
+    elif marker.points:
+        text += f", {len(marker.points)} points"
+    if marker.text:
+        text += f', text "{marker.text}"'
+    if marker.color.a == 0 and not marker.colors:
+        text += " (invisible: color.a is 0)"
+    return text
