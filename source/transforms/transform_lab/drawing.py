@@ -37,6 +37,11 @@ class Drawing:
         """Return the points to be in view, in the coordinates of the frame `name`."""
         return (self.seen - self.frames[name][:3, 3]) @ self.frames[name][:3, :3]
 
+    def leave_room(self, length):
+        """Have in view, too, where axes of `length` metres come to when the frames turn."""
+        around = 1.25 * length * np.concatenate([np.eye(3), -np.eye(3)])
+        self.seen = np.concatenate([self.seen, *(T[:3, 3] + around for T in self.frames.values())])
+
 
 def draw(scene, length, at=None):
     """Return the Drawing of a scene with axes of `length` metres, where no other was asked for.

@@ -37,6 +37,7 @@ class Link:
         self.name = uuid.uuid4().hex
         self._viewer, self._length = viewer, length
         self._base = self._sent = properties(drawing.nodes)
+        self._labels = labels(drawing.nodes)
         self._last, self._later, self._busy = 0.0, None, False
         self._channel = Channel(scene=self.name)
         self._channel.on_msg(self._receive)
@@ -61,15 +62,17 @@ class Link:
                 self._viewer._set(self._viewer._motion.at(message["values"]))
             finally:
                 self._busy = False
-            self._send(self._sent)
+            self._send(self._sent, message["number"])
 
-    def _send(self, old):
-        """Send what differs from the properties `old`."""
+    def _send(self, old, number=None):
+        """Send what differs from the properties `old`, as the answer to the question `number`."""
         if self._later is not None:
             self._later.cancel()
             self._later = None
         drawing = draw(self._viewer, self._length, self._viewer._at)
-        self._sent = properties(drawing.nodes)
-        self._last = time.monotonic()
-        words = {"labels": labels(drawing.nodes), "text": drawing.text}
+        self._sent, found = properties(drawing.nodes), labels(drawing.nodes)
+        words = {"text": drawing.text, "number": number}
+        if found != self._labels or old is self._base:
+            words["labels"] = self._labels = found
         self._channel.send(words, [block(changes(old, self._sent))])
+        self._last = time.monotonic()

@@ -3,6 +3,7 @@
 
 function showScene(buffer) {
   const [[told], base, ...states] = blocks(buffer), view = JSON.parse(new TextDecoder().decode(told));
+  window.onmessage = null;  // meshcat's script leaves one that sends every message again, for making films
   const pane = document.getElementById("pane"), bar = document.getElementById("bar");
   const viewer = window.viewer = new MeshCat.Viewer(pane);
   viewer.gui.domElement.style.display = "none";
@@ -215,18 +216,19 @@ function addPlayer(row, last, seconds, show) {
 // saved notebook, it is shown from the states that were computed beforehand.
 function addControls(view, row, choice, show, change) {
   const values = view.controls.map(control => control.value);  // the place of each in its list of values
-  let heard = false, waiting = null, moves = 0, asked = 0;
+  let heard = false, moves = 0, asked = 0, unanswered = 0, since = 0;
   const post = message => {
     if (window.parent !== window) window.parent.postMessage({scene: view.live, from: "page", message}, "*");
   };
   function moved() {
-    if (heard && waiting === null) ask();
-    else if (!heard || performance.now() - waiting > 1000) showState();
+    if (heard && (unanswered === 0 || performance.now() - since < 1000)) ask();
+    else showState();  // there is no kernel, or it is busy
   }
-  function ask() {  // one question at a time, so that no queue builds up
-    waiting = performance.now();
+  function ask() {  // a few questions at a time, so that no queue builds up
+    if (unanswered >= 3 || asked === moves) return;
+    if (unanswered++ === 0) since = performance.now();
     asked = moves;
-    post({values});
+    post({values, number: asked});
   }
   function showState() {
     if (!view.states.length) return note.hidden = false;
@@ -265,9 +267,11 @@ function addControls(view, row, choice, show, change) {
     if (data.message.hello) return post({ready: true});
     heard = true;
     note.hidden = true;
-    waiting = null;
     change({...data.message, packets: data.packets});
-    if (moves !== asked) ask();
+    if (data.message.number == null) return;  // not an answer, but what the kernel had to say of its own
+    unanswered = Math.max(unanswered - 1, 0);
+    since = performance.now();
+    ask();
   });
   post({ready: true});
 }

@@ -156,6 +156,8 @@ class Viewer(Scene):
         drawing, states, length = self._drawings()
         controls = self._motion.controls if self._motion else []
         link = self._link(drawing, length) if live or controls else None
+        if link and not states:
+            drawing.leave_room(length)
         body = page.render(drawing, self.fixed_frame, self._seen_from, self._motion, states, link and link.name)
         rows = 1 + len(controls) + bool(self._motion and self._motion.seconds)
         still = self._picture(drawing, page.text_height([drawing, *states]))
