@@ -349,5 +349,5 @@ def export(options):
 
 
 def test(options):
-    everything = ["--numprocesses", str(os.cpu_count())]
+    everything = ["--numprocesses", str(os.cpu_count()), "--dist", "loadgroup"]
     return subprocess.call([sys.executable, "-m", "pytest", *(options.extra or everything)])

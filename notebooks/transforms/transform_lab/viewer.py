@@ -34,7 +34,7 @@ class Viewer(Scene):
     def __init__(self, fixed_frame="world", ghost=False):
         super().__init__(fixed_frame, ghost)
         self._seen_from, self._at = "overview", None
-        self._motion = self._still = None  # what makes it move, and what it finds each time
+        self._motion = None
         self._links = []  # to the live figures that show it
 
     # Looking at it
@@ -49,7 +49,8 @@ class Viewer(Scene):
         if seen_from not in VIEWS:
             raise ValueError(f"seen_from must be one of {', '.join(VIEWS)}; got {seen_from!r}")
         at = [at] if isinstance(at, str) else at
-        known = [*self.frames, *self.points, *self.arrows, *self.boxes]
+        scene = self.state()
+        known = [*scene.frames, *scene.points, *scene.arrows, *scene.boxes]
         for name in at or ():
             if name not in known:
                 raise ValueError(f"look: nothing here is called {name!r}. Known names: {', '.join(known)}")
@@ -59,57 +60,57 @@ class Viewer(Scene):
     def animate(self, function, seconds=4):
         """Make the scene an animation of `seconds`, to be played and scrubbed; it works in a saved notebook too.
 
-        `function` is called with moments from 0 to 1. Each time it finds the viewer as it is now, and adds what there is
-        to see at that moment. What it returns is shown as text. The picture shows the end. Returns the viewer.
+        `function(scene, moment)` is called with moments from 0 to 1, and each time adds to `scene`, which holds what the
+        viewer holds, what there is to see then. What it returns is shown as text. The picture shows the end. Returns the
+        viewer.
         """
         if not seconds > 0:
             raise ValueError(f"animate: seconds must be above 0; got {seconds!r}")
-        return self._move(Motion(lambda moment: function(moment), seconds=float(seconds)), {"moment": 1.0})
+        motion = Motion(lambda scene, moment: function(scene, moment), {"moment": 1.0}, seconds=float(seconds))
+        return self._move(motion)
 
     def interact(self, function, **controls):
-        """Give the scene sliders and drop-down lists, one for each argument of `function`. Returns the viewer.
+        """Give the scene sliders and drop-down lists, one for each further argument of `function`. Returns the viewer.
 
         ::
 
-            def turn(degrees):
-                viewer.add_frame("frame_b", tft.rotation_matrix(np.radians(degrees), [0, 0, 1]))
+            def turn(scene, degrees):
+                scene.add_frame("frame_b", tft.rotation_matrix(np.radians(degrees), [0, 0, 1]))
 
-            viewer.interact(turn, degrees=(-180, 180))
+            Viewer("frame_a").interact(turn, degrees=(-180, 180))
 
         The controls are given as to ipywidgets' `interact`: (min, max) or (min, max, step) is a slider, a list is a
-        drop-down list, True or False a choice of the two; they start at the function's defaults. Each time the function
-        finds the viewer as it is now. What it returns is shown as text, and so is an error that it raises.
+        drop-down list, True or False a choice of the two; they start at the function's defaults. `scene` holds what the
+        viewer holds, and takes what the viewer takes. What the function returns is shown as text, and so is an error that
+        it raises.
 
-        In a notebook whose kernel runs, the function is called while the student drags. In a saved one the slider shows
+        In a notebook whose kernel runs, the function is called while the student drags. In a saved one the controls show
         what was computed beforehand: at most 48 states; more combinations than that need the kernel.
         """
-        defaults = {name: p.default for name, p in inspect.signature(function).parameters.items()}
-        if missing := [name for name in defaults if name not in controls and defaults[name] is inspect.Parameter.empty]:
+        empty = inspect.Parameter.empty
+        parameters = list(inspect.signature(function).parameters.values())[1:]
+        defaults = {parameter.name: parameter.default for parameter in parameters}
+        if missing := [name for name in defaults if name not in controls and defaults[name] is empty]:
             raise ValueError(f"interact: give a control for {', '.join(missing)}, such as {missing[0]}=(0, 90)")
         if not controls:
             raise ValueError("interact: give at least one control, such as degrees=(0, 90)")
-        empty = inspect.Parameter.empty
         made = [control(name, choices, defaults.get(name, empty)) for name, choices in controls.items()]
-        motion = Motion(function, made)
-        return self._move(motion, motion.at([one.place for one in made]))
+        motion = Motion(function, {}, made)
+        motion.arguments = motion.at([one.place for one in made])
+        return self._move(motion)
 
-    def _move(self, motion, arguments):
-        """Keep `motion`, and show the state of these arguments; an error of the function is raised."""
-        self._motion, self._still = motion, self.copy()
-        self.text = motion.call(arguments)
+    def _move(self, motion):
+        """Keep `motion`; an error that its function raises at the start is the caller's."""
+        motion.scene(self, motion.arguments, strict=True)
+        self._motion = motion
         return self
 
-    def _set(self, arguments):
-        """Show the state of these arguments; an error of the function becomes the text."""
-        self._restore(self._still)
-        try:
-            self.text = self._motion.call(arguments)
-        except Exception as error:  # the student's own, raised while they drag
-            self.text = f"{type(error).__name__}: {error}"
+    def state(self):
+        """Return the Scene that is shown: what the viewer holds, and what an animation or controls add to it now."""
+        return self._motion.scene(self, self._motion.arguments) if self._motion else self.copy()
 
-    def _restore(self, scene):
-        """Hold again what `scene`, a copy made earlier, holds; the fixed frame stays."""
-        vars(self).update({name: value for name, value in vars(scene.copy()).items() if name != "_fixed_frame"})
+    def description(self):
+        return Scene.description(self.state())
 
     def _changed(self):
         for link in self._links:
@@ -171,17 +172,12 @@ class Viewer(Scene):
         return self._picture(drawing, page.text_height([drawing, *states]))
 
     def _drawings(self):
-        """Return the scene's Drawing, those of the states that are computed beforehand, and the length of axes."""
+        """Return the Drawing of what is shown, those of the states computed beforehand, and the length of axes."""
         from .drawing import draw_all
 
-        now, scenes, links = self.copy(), [], self._links
-        self._links = []  # nobody watches while the states are computed
-        for arguments in self._motion.settings() if self._motion else ():
-            self._set(arguments)
-            scenes.append(self.copy())
-        self._restore(now)
-        self._links = links
-        (drawing, *states), length = draw_all([now, *scenes], self._at)
+        settings = self._motion.settings() if self._motion else []
+        scenes = [self.state(), *(self._motion.scene(self, arguments) for arguments in settings)]
+        (drawing, *states), length = draw_all(scenes, self._at)
         return drawing, states, length
 
     def _link(self, drawing, length):
@@ -206,7 +202,7 @@ class Viewer(Scene):
         """Return a line on what is to be seen and how to turn it."""
         from .drawing import grid
 
-        lengths = sorted({frame.length or length for frame in self.frames.values()})
+        lengths = sorted({frame.length or length for frame in self.state().frames.values()})
         _, step = grid(drawing.seen_from(self.fixed_frame))
         return (
             f"Fixed frame {self.fixed_frame}. Axes {' or '.join(f'{v:g}' for v in lengths)} m long: X red, Y green,"

@@ -31,8 +31,8 @@ def animate_rotation(rotation, names=("frame_a", "frame_b")):
     if angle > 1e-6:
         viewer.add_arrow("axis", 1.3 * axis)
 
-    def turn(moment):
-        viewer.add_frame(names[1], tft.rotation_matrix(moment * angle, axis), length=1.0)
+    def turn(scene, moment):
+        scene.add_frame(names[1], tft.rotation_matrix(moment * angle, axis), length=1.0)
         quaternion = [*(axis * math.sin(moment * angle / 2)), math.cos(moment * angle / 2)]
         columns = "  ".join(f"{letter} {round(number, 3) + 0.0:6.3f}" for letter, number in zip("xyzw", quaternion))
         return f"{math.degrees(moment * angle):.0f}° about ({row_text(np.round(axis, 3))})\n{columns}"
@@ -53,16 +53,16 @@ def animate_chain(*transforms, names="ABCDEFGHIJKLMNOPQRSTUVWXYZ"):
         raise ValueError(f"animate_chain takes one transform or more and one name more; got {len(links)}, {len(names)}")
     viewer = Viewer(names[0])
 
-    def assemble(moment):
+    def assemble(scene, moment):
         done = moment * len(links)
         for i, link in enumerate(links[: max(1, math.ceil(done))]):
-            viewer.add_frame(names[i + 1], between(np.eye(4), link, min(done - i, 1)), parent=names[i])
+            scene.add_frame(names[i + 1], between(np.eye(4), link, min(done - i, 1)), parent=names[i])
         last = max(1, math.ceil(done))
         product = " @ ".join(f"{names[i]}_T_{names[i + 1]}" for i in range(last))
         if last - done > 1e-9:
             return f"{product}\n{names[last]} starts where {names[last - 1]} is, and moves along its axes"
         whole = f"{names[0]}_T_{names[last]}"
-        matrix = _matrix_text(viewer.lookup(names[0], names[last]))
+        matrix = _matrix_text(scene.lookup(names[0], names[last]))
         return f"{product if product == whole else f'{whole} = {product}'}\n{matrix}"
 
     return viewer.animate(assemble, seconds=2 * len(links))
@@ -80,10 +80,10 @@ def animate_inverse(a_T_b, names=("A", "B")):
     b_T_a = tft.inverse_matrix(a_T_b)
     viewer = Viewer("fixed frame", ghost=True)
 
-    def change_sides(moment):
+    def change_sides(scene, moment):
         part = min(max((moment - 0.25) / 0.5, 0), 1)
-        viewer.add_frame(a, between(np.eye(4), b_T_a, part))
-        viewer.add_frame(b, a_T_b, parent=a)
+        scene.add_frame(a, between(np.eye(4), b_T_a, part))
+        scene.add_frame(b, a_T_b, parent=a)
         if part == 0:
             return f"{a} is the fixed frame. {a}_T_{b}:\n{_matrix_text(a_T_b)}"
         if part == 1:
@@ -115,12 +115,12 @@ def animate_approach(object_pose, pre_grasp_pose, wrong_pose=None):
         viewer.add_frame("wrong", wrong_pose)
         stops = {"wrong": viewer.lookup("base_link", "wrong"), **stops}
 
-    def approach(moment):
+    def approach(scene, moment):
         for name, stop in stops.items():
             there, on = min(moment / 0.5, 1), max((moment - 0.6) / 0.4, 0)
             pose = between(home, stop, there) if there < 1 else between(stop, stop @ ahead, on)
-            viewer.add_frame(name, pose, length=0.05)
-            viewer.add_gripper(name, color=ORANGE if name == "wrong" else STEEL, ghost=name == "wrong")
+            scene.add_frame(name, pose, length=0.05)
+            scene.add_gripper(name, color=ORANGE if name == "wrong" else STEEL, ghost=name == "wrong")
         if moment < 0.5:
             return "1  to the pre-grasp pose"
         if moment < 1:

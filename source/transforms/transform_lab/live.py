@@ -38,18 +38,16 @@ class Link:
         self._viewer, self._length = viewer, length
         self._base = self._sent = properties(drawing.nodes)
         self._labels = labels(drawing.nodes)
-        self._last, self._later, self._busy = 0.0, None, False
+        self._last, self._later = 0.0, None
         self._channel = Channel(scene=self.name)
         self._channel.on_msg(self._receive)
 
     def refresh(self):
         """Send the viewer's changes: at once, or together with those that follow within a 40th of a second."""
         wait = self._last + PERIOD - time.monotonic()
-        if self._busy or self._later is not None:
-            return
         if wait <= 0:
             self._send(self._sent)
-        else:
+        elif self._later is None:
             self._later = asyncio.get_running_loop().call_later(wait, self._send, self._sent)
 
     def _receive(self, _, message, __):
@@ -57,11 +55,7 @@ class Link:
         if message.get("ready"):
             self._send(self._base)
         elif self._viewer._motion:
-            self._busy = True
-            try:
-                self._viewer._set(self._viewer._motion.at(message["values"]))
-            finally:
-                self._busy = False
+            self._viewer._motion.arguments = self._viewer._motion.at(message["values"])
             self._send(self._sent, message["number"])
 
     def _send(self, old, number=None):
@@ -69,7 +63,7 @@ class Link:
         if self._later is not None:
             self._later.cancel()
             self._later = None
-        drawing = draw(self._viewer, self._length, self._viewer._at)
+        drawing = draw(self._viewer.state(), self._length)
         self._sent, found = properties(drawing.nodes), labels(drawing.nodes)
         words = {"text": drawing.text, "number": number}
         if found != self._labels or old is self._base:

@@ -30,14 +30,18 @@ class Control:
 
 @dataclass
 class Motion:
-    """A function that fills a viewer anew for each moment (0 to 1), or for each setting of the controls."""
+    """A function that adds to a scene what there is to see at a moment (0 to 1), or at a setting of the controls.
+
+    `arguments` are those of the present state.
+    """
 
     function: object
+    arguments: dict
     controls: list = field(default_factory=list)
     seconds: float | None = None
 
     def settings(self):
-        """Return the keyword arguments (dicts) of the states that are computed beforehand."""
+        """Return the arguments (dicts) of the states that are computed beforehand."""
         if self.seconds is not None:
             return [{"moment": moment} for moment in np.linspace(0, 1, STATES).tolist()]
         _thin_out(self.controls)
@@ -56,10 +60,20 @@ class Motion:
         """Return the arguments for these places of the controls."""
         return {control.name: control.values[place] for control, place in zip(self.controls, places)}
 
-    def call(self, arguments):
-        """Call the function; what it returns becomes text. What it prints is not shown."""
-        with contextlib.redirect_stdout(io.StringIO()):
-            return as_text(self.function(**arguments))
+    def scene(self, base, arguments, strict=False):
+        """Return a copy of the scene `base` with what the function adds to it; what it returns is the text.
+
+        An error of the function becomes the text, too, or is raised if `strict`. What it prints is not shown.
+        """
+        scene = base.copy()
+        try:
+            with contextlib.redirect_stdout(io.StringIO()):
+                scene.text = as_text(self.function(scene, **arguments))
+        except Exception as error:  # the student's own, raised while they drag
+            if strict:
+                raise
+            scene.text = f"{type(error).__name__}: {error}"
+        return scene
 
 
 def as_text(result):

@@ -1,0 +1,389 @@
+"""The notebooks in a real browser: JupyterLab and Notebook 7 as students open them, saved copies, feedback pages.
+
+The server runs under /user/x/, as behind a JupyterHub. Screenshots go to screenshots/, to be looked at.
+"""
+
+import json
+import os
+import re
+import secrets
+import shutil
+import socket
+import subprocess
+import sys
+import time
+import urllib.request
+
+import nbformat
+import numpy as np
+import pytest
+from conftest import ROOT, lacking
+from PIL import Image
+
+pytestmark = pytest.mark.xdist_group("browser")
+
+NOTEBOOKS = [path.stem for path in sorted((ROOT / "notebooks/transforms").glob("*.ipynb"))]
+SCREENSHOTS = ROOT / "screenshots"
+FLAGS = (
+    "--no-sandbox --disable-gpu --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader"
+    " --disable-background-networking --disable-component-update --disable-sync --no-first-run"
+).split()
+PATIENCE = 60_000  # milliseconds; these machines are slow at times
+FRAME = "name => viewer.scene_tree.find(['meshcat', 'frames', name]).object.matrix.elements"
+ROOT_MATRIX = "() => { const o = viewer.scene_tree.find(['meshcat']).object; o.updateMatrix(); return o.matrix.elements }"
+
+
+class Server:
+    """A Jupyter server in a folder of its own with the released notebooks in it."""
+
+    def __init__(self, folder):
+        self.folder, self.token = folder, secrets.token_hex(8)
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            port = free.getsockname()[1]
+        self.url = f"http://127.0.0.1:{port}/user/x"
+        shutil.copytree(ROOT / "notebooks/transforms", folder, dirs_exist_ok=True)
+        home = {name: str(folder / ".home" / name) for name in ("JUPYTER_CONFIG_DIR", "JUPYTER_DATA_DIR", "IPYTHONDIR")}
+        self.log = (folder / "jupyter.log").open("w")
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", "jupyterlab", "--no-browser", "--allow-root", "--ip=127.0.0.1", f"--port={port}",
+             "--ServerApp.base_url=/user/x/", f"--IdentityProvider.token={self.token}", f"--ServerApp.root_dir={folder}",
+             "--LabApp.expose_app_in_browser=True", "--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate",
+             "--LabApp.news_url=None", "--JupyterNotebookApp.expose_app_in_browser=True"],
+            stdout=self.log, stderr=self.log, stdin=subprocess.DEVNULL, env=os.environ | home,
+        )  # fmt: skip
+        for _ in range(300):
+            if self.process.poll() is not None:
+                raise RuntimeError((folder / "jupyter.log").read_text())
+            try:
+                self.api("api")
+                return
+            except OSError:
+                time.sleep(0.2)
+        raise RuntimeError("Jupyter did not start: " + (folder / "jupyter.log").read_text())
+
+    def api(self, path, method="GET"):
+        request = urllib.request.Request(f"{self.url}/{path}", method=method)
+        request.add_header("Authorization", f"token {self.token}")
+        with urllib.request.urlopen(request, timeout=10) as answer:
+            text = answer.read()
+        return json.loads(text) if text else None
+
+    def stop_kernels(self):
+        for session in self.api("api/sessions"):
+            self.api(f"api/sessions/{session['id']}", "DELETE")
+
+    def stop(self):
+        self.process.terminate()
+        try:
+            self.process.wait(20)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+        self.log.close()
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory):
+    running = Server(tmp_path_factory.mktemp("jupyter") / "work")
+    yield running
+    running.stop()
+
+
+@pytest.fixture(scope="module")
+def browser():
+    from playwright.sync_api import sync_playwright
+
+    executable = shutil.which("chromium") or lacking("needs Chromium, to open notebooks as a student does")
+    with sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(executable_path=executable, args=FLAGS)
+        yield chromium
+        chromium.close()
+
+
+@pytest.fixture
+def page(browser):
+    """A page in which nothing of ours may complain: an error on the console is an error of the test."""
+    context = browser.new_context(viewport={"width": 1100, "height": 900})
+    context.set_default_timeout(PATIENCE)
+    found, opened = [], context.new_page()
+    opened.on("pageerror", lambda error: found.append((str(error), error.stack or "")))
+    opened.on("console", lambda said: said.type == "error" and found.append((said.text, said.location["url"])))
+    yield opened
+    context.close()
+    # Jupyter's own scripts and addresses, and what a page from disk fetches for its formulas
+    others = re.compile(r"/user/x/(static|api|lab|files)/|favicon|net::ERR_|ResizeObserver loop")
+    assert [(text, where) for text, where in found if not others.search(text + where)] == []
+
+
+class Opened:
+    """A notebook in a page, and what a person does with it."""
+
+    def __init__(self, page, server, name, at="lab/tree", fresh=True):
+        self.page, self.name = page, name
+        server.stop_kernels()
+        released = ROOT / f"notebooks/transforms/{name}.ipynb"
+        if fresh and released.exists():
+            shutil.copy(released, server.folder)
+        query = "?reset&" if at == "lab/tree" else "?"
+        page.goto(f"{server.url}/{at}/{name}.ipynb{query}token={server.token}")
+        page.wait_for_function("() => window.jupyterapp")
+        page.locator(".jp-Notebook .jp-Cell").first.wait_for()
+        page.wait_for_function("() => document.querySelector('.jp-Notebook .jp-InputPrompt')")
+
+    def command(self, name):
+        self.page.evaluate("name => window.jupyterapp.commands.execute(name)", name)
+
+    def run_all(self):
+        """Run all cells, and wait until the kernel has done them."""
+        self.page.wait_for_function(
+            "() => window.jupyterapp.shell.currentWidget?.sessionContext?.session?.kernel?.status === 'idle'"
+        )
+        self.command("notebook:run-all-cells")
+        self.page.wait_for_function(
+            """() => {
+              const cells = [...window.jupyterapp.shell.currentWidget.content.model.cells];
+              const code = cells.filter(cell => cell.type === "code" && cell.sharedModel.getSource().trim());
+              return code.at(-1).executionCount !== null
+                && window.jupyterapp.shell.currentWidget.sessionContext.session.kernel.status === "idle";
+            }"""
+        )
+
+    def figures(self):
+        """Return the cells (their number) that show a scene, and scroll through the notebook so that all are drawn."""
+        return self.page.evaluate(
+            """() => [...window.jupyterapp.shell.currentWidget.content.model.cells].flatMap((cell, i) =>
+              cell.type === "code" && JSON.stringify(cell.sharedModel.toJSON().outputs).includes("<iframe") ? [i] : [])"""
+        )
+
+    def scene(self, cell):
+        """Scroll to a cell and return the frame in which its scene is drawn."""
+        self.page.evaluate("i => window.jupyterapp.shell.currentWidget.content.scrollToItem(i, 'center')", cell)
+        place = self.page.locator(f'.jp-Cell[data-windowed-list-index="{cell}"] iframe').last
+        place.scroll_into_view_if_needed()
+        return drawn(place)
+
+
+def drawn(place):
+    """Return the frame at `place` (an iframe) once its scene is drawn."""
+    frame = place.element_handle().content_frame()
+    frame.wait_for_function("() => window.viewer && document.body.style.background === 'white'")
+    return frame
+
+
+def frame_in(scene, name):
+    """The 4x4 matrix of a frame in the root frame, as the browser has it."""
+    return np.reshape(scene.evaluate(FRAME, name), (4, 4)).T
+
+
+def picture(scene, name):
+    """Take a screenshot of a scene; the part of its pixels that is not white."""
+    SCREENSHOTS.mkdir(exist_ok=True)
+    path = SCREENSHOTS / f"{name}.png"
+    scene.frame_element().screenshot(path=path)
+    pixels = np.asarray(Image.open(path).convert("RGB")).astype(int)
+    canvas = pixels[: int(len(pixels) * 0.8)]
+    return (canvas.min(axis=2) < 200).mean()
+
+
+@pytest.mark.parametrize("name", NOTEBOOKS)
+def test_run_all_in_jupyterlab(page, server, name):
+    notebook = Opened(page, server, name)
+    notebook.run_all()
+    figures = notebook.figures()
+    assert len(figures) >= 2
+    for i in figures:
+        scene = notebook.scene(i)
+        frames = scene.evaluate("() => Object.keys(viewer.scene_tree.find(['meshcat', 'frames']).children)")
+        assert frames
+        assert picture(scene, f"{name}_{i}") > 0.003, i
+    notebook.command("docmanager:save")
+
+
+def test_a_slider_turns_a_frame_while_it_is_dragged(page, server):
+    notebook = Opened(page, server, "1_rotation")
+    notebook.run_all()
+    scene = next(s for s in map(notebook.scene, notebook.figures()) if s.query_selector("input[name=degrees]"))
+    before = frame_in(scene, "frame_b")
+    slider = scene.locator("input[name=degrees]")
+    box = slider.bounding_box()
+    middle = box["y"] + box["height"] / 2
+    page.mouse.move(box["x"] + box["width"] / 2, middle)
+    page.mouse.down()
+    for step in range(20):
+        page.mouse.move(box["x"] + box["width"] * (0.5 + step / 50), middle)
+    page.mouse.up()
+    degrees = float(scene.locator("output").inner_text())
+    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    expected = [[c, -s, 0, 0], [s, c, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+    deadline = time.monotonic() + 20
+    while not np.allclose(found := frame_in(scene, "frame_b"), expected, atol=1e-6) and time.monotonic() < deadline:
+        page.wait_for_timeout(100)
+    np.testing.assert_allclose(found, expected, atol=1e-6)
+    assert degrees > 90 and not np.allclose(found, before)
+    assert f"{c:.3f}".rstrip("0") in scene.locator("#text").inner_text()  # what the function returned
+    picture(scene, "slider")
+
+
+LIVE = """
+import ipywidgets, numpy as np
+from transform_lab import Viewer, tft
+def turn(scene, degrees):
+    if degrees == 13:
+        raise ValueError("thirteen")
+    scene.add_frame("b", tft.rotation_matrix(np.radians(degrees), [0, 0, 1]))
+Viewer("a").interact(turn, degrees=(0, 360))
+""", """
+followed = Viewer("a")
+followed.add_frame("b", np.eye(4))
+followed.show(live=True)
+slider = ipywidgets.IntSlider(max=360)
+slider.observe(lambda change: followed.add_frame("b", tft.rotation_matrix(np.radians(change.new), [0, 0, 1])), "value")
+slider
+""", """
+for i in range(1001):
+    followed.add_frame("b", tft.translation_matrix([i / 1000, 0, 0]))
+"""  # fmt: skip
+
+
+def test_live_scenes_follow_the_kernel(page, server):
+    cells = [nbformat.v4.new_code_cell(source.strip()) for source in LIVE]
+    python = {"kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}}
+    nbformat.write(nbformat.v4.new_notebook(cells=cells, metadata=python), server.folder / "live.ipynb")
+    notebook = Opened(page, server, "live")
+    notebook.run_all()
+    first, second = map(notebook.scene, notebook.figures())
+    page.wait_for_timeout(1000)
+    np.testing.assert_allclose(frame_in(second, "b")[:3, 3], [1, 0, 0])  # after 1,000 changes it shows the last one
+    slider = page.locator(".widget-slider [role=slider], .jupyter-widgets [role=slider]").first
+    slider.focus()
+    slider.press("ArrowRight")
+    page.wait_for_timeout(1500)
+    np.testing.assert_allclose(frame_in(second, "b")[0, 0], np.cos(np.radians(1)), atol=1e-9)
+    first = notebook.scene(0)
+    inner = first.locator("input[name=degrees]")
+    inner.fill("13")
+    first.wait_for_function("() => document.getElementById('text').textContent === 'ValueError: thirteen'")
+    inner.fill("301")  # not among those computed beforehand, so the kernel has answered
+    page.wait_for_timeout(1500)
+    np.testing.assert_allclose(frame_in(first, "b")[0, 0], np.cos(np.radians(301)), atol=1e-6)
+    sizes = page.evaluate(
+        """() => [...window.jupyterapp.shell.currentWidget.content.model.cells]
+          .map(cell => JSON.stringify(cell.sharedModel.toJSON().outputs).length)"""
+    )
+    assert max(sizes[1:]) < 400_000  # 1,000 changes have not made the output grow
+
+
+def test_any_frame_can_be_the_fixed_one(page, server):
+    notebook = Opened(page, server, "3_chaining")
+    notebook.run_all()
+    scene = notebook.scene(notebook.figures()[0])
+    scene.locator("select").first.select_option(label="C")
+    root_T_c = frame_in(scene, "C")
+    c_T_root = np.reshape(scene.evaluate(ROOT_MATRIX), (4, 4)).T
+    np.testing.assert_allclose(c_T_root @ root_T_c, np.eye(4), atol=1e-6)
+    before = scene.evaluate("() => viewer.camera.position.toArray()")
+    scene.locator("select").nth(1).select_option(label="above")
+    assert scene.evaluate("() => viewer.camera.position.toArray()") != before
+    picture(scene, "fixed_frame_above")
+
+
+def test_an_animation_plays(page, server):
+    notebook = Opened(page, server, "3_chaining")
+    notebook.run_all()
+    scene = next(s for s in map(notebook.scene, notebook.figures()) if s.query_selector("button"))
+    play(scene)
+
+
+def play(scene):
+    """Play the staircase of notebook 3 and see its frames move to their places."""
+    end = frame_in(scene, "B")
+    scene.locator("button").click()
+    scene.wait_for_function("() => document.querySelector('input[type=range]').value > 2")
+    assert frame_in(scene, "B")[0, 3] < end[0, 3]
+    scene.wait_for_function("() => document.querySelector('button').textContent.includes('Play')")
+    np.testing.assert_allclose(frame_in(scene, "B"), end, atol=1e-6)
+    np.testing.assert_allclose(frame_in(scene, "E")[:3, 3], [0, 0, 0.8], atol=1e-6)
+
+
+def saved(page, server, name, copy):
+    """Run a notebook, save it, stop its kernel; return the path of a copy of the file."""
+    notebook = Opened(page, server, name)
+    notebook.run_all()
+    notebook.command("docmanager:save")
+    path, deadline = server.folder / f"{name}.ipynb", time.monotonic() + 30
+    while "<iframe" not in path.read_text() and time.monotonic() < deadline:
+        page.wait_for_timeout(200)
+    page.wait_for_timeout(500)
+    server.stop_kernels()
+    target = server.folder / f"{copy}.ipynb"
+    shutil.copy(path, target)
+    return target
+
+
+def test_a_saved_notebook_without_a_kernel(page, server, tmp_path):
+    path = saved(page, server, "3_chaining", "saved")
+    exported = subprocess.run(
+        [sys.executable, "-m", "nbconvert", "--to", "html", "--output-dir", tmp_path, path], capture_output=True, text=True
+    )
+    assert exported.returncode == 0, exported.stderr
+    page.goto((tmp_path / "saved.html").as_uri())
+    places = page.locator("iframe")
+    scenes = []
+    for i in range(places.count()):
+        places.nth(i).scroll_into_view_if_needed()
+        scenes.append(drawn(places.nth(i)))
+    play(next(scene for scene in scenes if scene.query_selector("button")))
+
+
+def test_controls_of_a_saved_notebook_show_what_was_computed_beforehand(page, server):
+    saved(page, server, "1_rotation", "kept")
+    notebook = Opened(page, server, "1_rotation", fresh=False)  # with a new kernel, which knows nothing
+    scene = next(s for s in map(notebook.scene, notebook.figures()) if s.query_selector("input[name=degrees]"))
+    scene.locator("input[name=degrees]").fill("0")
+    np.testing.assert_allclose(frame_in(scene, "frame_b")[:2, 0], [-1, 0], atol=1e-6)  # -180 degrees
+    assert scene.locator("#text").inner_text().startswith("[[-1.")
+
+
+def test_an_untrusted_copy_shows_the_pictures(page, server):
+    path = saved(page, server, "4_inversion", "untrusted")
+    notebook = nbformat.read(path, as_version=4)
+    for cell in notebook.cells:
+        if cell.cell_type == "code":
+            for output in cell.outputs:  # not what was signed when it was saved
+                if "text/html" in output.get("data", {}):
+                    output.data["text/html"] += "<p></p>"
+    nbformat.write(notebook, path)
+    opened = Opened(page, server, "untrusted")
+    figures = opened.figures()
+    assert figures
+    for i in figures:
+        page.evaluate("i => window.jupyterapp.shell.currentWidget.content.scrollToItem(i, 'center')", i)
+        cell = page.locator(f'.jp-Cell[data-windowed-list-index="{i}"]')
+        image = cell.locator("figure img, .jp-RenderedHTML img").first
+        image.scroll_into_view_if_needed()
+        assert image.evaluate("image => image.complete && image.naturalWidth") > 800
+        assert image.get_attribute("alt").startswith("Scene in the fixed frame")
+        assert cell.locator("iframe").count() == 0
+    SCREENSHOTS.mkdir(exist_ok=True)
+    page.screenshot(path=SCREENSHOTS / "untrusted.png")
+
+
+def test_notebook_7(page, server):
+    notebook = Opened(page, server, "2_homogeneous_transforms", at="notebooks")
+    notebook.run_all()
+    for i in notebook.figures():
+        scene = notebook.scene(i)
+        assert picture(scene, f"notebook_7_{i}") > 0.003
+
+
+def test_feedback_opened_from_disk(page, course, hand_in, sandboxed):
+    hand_in(course, "ada", {path.stem: path for path in sorted(course.release.glob("*.ipynb"))})
+    command = [sys.executable, "-m", "autograder", "grade"]
+    subprocess.run(command, cwd=course.root, check=True, capture_output=True, stdin=subprocess.DEVNULL, timeout=300)
+    pages = sorted((course.feedback("ada")).glob("*.html"))
+    assert len(pages) == 5
+    SCREENSHOTS.mkdir(exist_ok=True)
+    for path in pages:
+        page.goto(path.as_uri())
+        page.get_by_text("not done yet").first.wait_for()
+        page.screenshot(path=SCREENSHOTS / f"feedback_{path.stem}.png")
