@@ -43,13 +43,16 @@ class Server:
             port = free.getsockname()[1]
         self.url = f"http://127.0.0.1:{port}/user/x"
         shutil.copytree(ROOT / "notebooks/transforms", folder, dirs_exist_ok=True)
-        home = {name: str(folder / ".home" / name) for name in ("JUPYTER_CONFIG_DIR", "JUPYTER_DATA_DIR", "IPYTHONDIR")}
+        names = ("JUPYTER_CONFIG_DIR", "JUPYTER_DATA_DIR", "IPYTHONDIR", "JUPYTERLAB_SETTINGS_DIR")
+        home = {name: str(folder / ".home" / name) for name in names}
+        settings = folder / ".home/JUPYTERLAB_SETTINGS_DIR/@jupyterlab/apputils-extension"
+        settings.mkdir(parents=True)
+        (settings / "notification.jupyterlab-settings").write_text('{"fetchNews": "false", "checkForUpdates": false}')
         self.log = (folder / "jupyter.log").open("w")
         self.process = subprocess.Popen(
             [sys.executable, "-m", "jupyterlab", "--no-browser", "--allow-root", "--ip=127.0.0.1", f"--port={port}",
              "--ServerApp.base_url=/user/x/", f"--IdentityProvider.token={self.token}", f"--ServerApp.root_dir={folder}",
-             "--LabApp.expose_app_in_browser=True", "--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate",
-             "--LabApp.news_url=None", "--JupyterNotebookApp.expose_app_in_browser=True"],
+             "--LabApp.expose_app_in_browser=True", "--JupyterNotebookApp.expose_app_in_browser=True"],
             stdout=self.log, stderr=self.log, stdin=subprocess.DEVNULL, env=os.environ | home,
         )  # fmt: skip
         for _ in range(300):

@@ -1,4 +1,4 @@
-"""`.venv/bin/python -m autograder.exercises`: write README.md beside this file from the specifications."""
+"""`.venv/bin/python -m autograder.exercises`: write README.md and pre_grasp.png beside this file from the specifications."""
 
 from inspect import signature
 from pathlib import Path
@@ -7,11 +7,14 @@ import jinja2
 import numpy as np
 from transform_lab.check import call
 from transform_lab.diagnosis import GENERAL
+from transform_lab.messages import Point, Pose, Quaternion
 from transform_lab.verdict import examine
+from transform_lab.viewer import Viewer
 
 from . import EXERCISES, PUBLIC_SEED, key
 
 PAGE = Path(__file__).with_name("README.md")
+PICTURE = Path(__file__).with_name("pre_grasp.png")  # shown in the README of the project
 TEMPLATES = Path(__file__).parent.parent / "templates"
 
 
@@ -20,6 +23,18 @@ def page():
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(TEMPLATES), keep_trailing_newline=True)
     template = environment.get_template("exercises.md")
     return template.render(general=GENERAL, exercises=[_described(exercise) for exercise in EXERCISES.values()])
+
+
+def picture():
+    """The PNG (bytes) of the lab's pre-grasp scene: the gripper 10 cm behind the object, along the object's x axis."""
+    viewer = Viewer("base_link")
+    object_pose = Pose(Point(0.6, -0.1, 0.7), Quaternion(0, 0, 0.38268343, 0.92387953))
+    viewer.add_frame("object", object_pose, length=0.05)
+    viewer.add_box("object", (0.04, 0.04, 0.1), frame="object")
+    viewer.add_frame("pre-grasp", EXERCISES["pre_grasp"].reference(object_pose), length=0.05)
+    viewer.add_gripper("pre-grasp")
+    viewer.add_arrow("10 cm", tail=(0, 0, 0.065), tip=(0.1, 0, 0.065), frame="pre-grasp")
+    return viewer.look(at=["object", "pre-grasp"]).picture()
 
 
 def _described(exercise):
@@ -47,4 +62,5 @@ def _earned(exercise, public, misconception):
 
 if __name__ == "__main__":
     PAGE.write_text(page(), encoding="utf-8")
-    print(f"{PAGE.name} is written.")
+    PICTURE.write_bytes(picture())
+    print(f"{PAGE.name} and {PICTURE.name} are written.")

@@ -105,11 +105,11 @@ def animate_approach(object_pose, pre_grasp_pose, wrong_pose=None):
     viewer = Viewer("base_link")
     viewer.add_frame("object", object_pose, length=0.05)
     viewer.add_box("object", (0.04, 0.04, 0.14), frame="object")
-    viewer.add_frame("pre-grasp", pre_grasp_pose, length=0.05, ghost=True)
+    viewer.add_frame("pre-grasp", pre_grasp_pose, length=0.04, ghost=True)
     base_T_object, base_T_stop = (viewer.lookup("base_link", name) for name in ("object", "pre-grasp"))
     ahead = tft.translation_matrix([np.linalg.norm(base_T_object[:3, 3] - base_T_stop[:3, 3]), 0, 0])
     home = between(base_T_stop, np.eye(4), 0.5)
-    home[:3, 3] = base_T_stop[:3, 3] + [-0.12, 0, 0.15]
+    home[:3, 3] = base_T_stop[:3, 3] + [-0.06, 0, 0.1]
     stops = {"gripper_link": base_T_stop}
     if wrong_pose is not None:
         viewer.add_frame("wrong", wrong_pose)
@@ -119,7 +119,7 @@ def animate_approach(object_pose, pre_grasp_pose, wrong_pose=None):
         for name, stop in stops.items():
             there, on = min(moment / 0.5, 1), max((moment - 0.6) / 0.4, 0)
             pose = between(home, stop, there) if there < 1 else between(stop, stop @ ahead, on)
-            scene.add_frame(name, pose, length=0.05)
+            scene.add_frame(name, pose, length=0.03)
             scene.add_gripper(name, color=ORANGE if name == "wrong" else STEEL, ghost=name == "wrong")
         if moment < 0.5:
             return "1  to the pre-grasp pose"

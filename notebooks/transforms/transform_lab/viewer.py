@@ -39,13 +39,14 @@ class Viewer(Scene):
 
     # Looking at it
 
-    def look(self, seen_from="overview", at=None):
-        """Choose from where the scene is looked at first, and at what. Returns the viewer.
+    def look(self, seen_from=None, at=None):
+        """Choose from where the scene is looked at first, and at what; None leaves it as it is. Returns the viewer.
 
         `seen_from` is "overview", "above" (x to the right, y up), "side" (x to the right, z up) or "behind" (as the robot
         sees it: x ahead, y to the left). `at` is a list of names of frames, points, arrows and boxes that have to be in
         view; by default everything has to be.
         """
+        seen_from = seen_from or self._seen_from
         if seen_from not in VIEWS:
             raise ValueError(f"seen_from must be one of {', '.join(VIEWS)}; got {seen_from!r}")
         at = [at] if isinstance(at, str) else at
@@ -54,7 +55,7 @@ class Viewer(Scene):
         for name in at or ():
             if name not in known:
                 raise ValueError(f"look: nothing here is called {name!r}. Known names: {', '.join(known)}")
-        self._seen_from, self._at = seen_from, at or None
+        self._seen_from, self._at = seen_from, at or self._at
         return self
 
     def animate(self, function, seconds=4):

@@ -81,7 +81,8 @@ def as_text(result):
     if result is None:
         return ""
     if isinstance(result, np.ndarray):
-        return np.array2string(np.round(result, 3) + 0.0, suppress_small=True)
+        rounded = np.round(result, 3) + 0.0 if np.issubdtype(result.dtype, np.floating) else result  # -0 becomes 0
+        return np.array2string(rounded, suppress_small=True)
     return str(result)
 
 

@@ -36,6 +36,9 @@ class _Node:
         if shell:
             shell.events.register("post_run_cell", lambda *_: self.show())
         else:
+            import matplotlib.backends.backend_agg  # noqa: F401: what draws cannot be imported while Python ends
+            import meshcat  # noqa: F401
+
             atexit.register(self.write)
         self.watching = True
 
