@@ -1,5 +1,6 @@
 """The exercises prove themselves: the reference is right, misconceptions are caught and named, stubs earn nothing."""
 
+import io
 import json
 import math
 import re
@@ -8,6 +9,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from PIL import Image
 from scipy.spatial.transform import Rotation
 from transform_lab import Point, Pose, Quaternion
 from transform_lab.answers import TOLERANCE, agree, parts_of
@@ -15,7 +17,7 @@ from transform_lab.check import call
 from transform_lab.verdict import examine
 
 from autograder.exercises import EXERCISES, PUBLIC_SEED, key
-from autograder.exercises.__main__ import PAGE, page
+from autograder.exercises.__main__ import PAGE, PICTURE, page, picture
 from autograder.exercises.cases import either_sign, half_turn
 
 pytestmark = pytest.mark.filterwarnings("ignore:the matrix subclass")  # np.matrix, which students still use
@@ -366,6 +368,12 @@ def test_credit_is_counted_by_families_and_their_weights(name):
             return None if next(cases)["family"] == family else EXERCISES[name].reference(*args, **kwargs)
 
         assert judged(name, wrong_in_one_family).credit == pytest.approx(1.0 - weight / total)
+
+
+def test_the_picture_in_the_readme_is_up_to_date():
+    kept, now = (np.array(Image.open(file).convert("L")).astype(int) for file in (PICTURE, io.BytesIO(picture())))
+    assert (np.abs(kept - now) > 40).mean() < 0.002, "run `.venv/bin/python -m autograder.exercises`"
+    assert PICTURE.stat().st_size < 40_000
 
 
 def test_the_page_for_instructors_is_up_to_date():

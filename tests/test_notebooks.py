@@ -71,6 +71,10 @@ def test_run_all_of_a_solved_notebook(path):
         assert text_of(cell).endswith(": all right."), cell.source
 
 
+    pages = [o.data["text/html"] for cell in notebook.cells for o in cell.get("outputs", ()) if "<iframe" in str(o)]
+    assert len(pages) >= 3 and max(map(len, pages)) <= 350_000
+
+
 @pytest.mark.parametrize("path", RELEASED, ids=names(RELEASED))
 def test_run_all_of_an_untouched_notebook_reaches_its_end_calmly(path):
     notebook = run_all(path)

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 import umsgpack
 from PIL import Image
-from transform_lab import drawing, page, picture, shapes
+from transform_lab import drawing, page, picture, shapes, tft
 from transform_lab.camera import Camera
 from transform_lab.markers import arrow_marker, axis_marker
 from transform_lab.messages import ColorRGBA, Header, Marker, Point, Pose, PoseStamped, Quaternion, Vector3
@@ -265,6 +265,161 @@ def test_a_fresh_orientation_of_a_marker_is_no_rotation_and_no_opacity_is_invisi
     node = marker_node(viewer)
     np.testing.assert_allclose(node.transform, A_T_B, atol=1e-12)
     assert not node.solids and "invisible: color.a is 0" in viewer.description()
+
+
+# Boxes, grippers, ghosts, the fixed frame, where it is seen from
+
+
+def test_boxes_are_where_their_pose_says(viewer):
+    viewer.add_box("table", (2, 1, 0.1), pose=Pose(Point(0, 0, 1), Quaternion(0, 0, HALF, HALF)), frame="b")
+    node = next(node for node in drawn(viewer).nodes if node.path == "boxes/table")
+    np.testing.assert_allclose(node.transform @ node.solids[0].matrix @ [0.5, 0, 0, 1], A_T_B @ [0, 1, 1, 1], atol=1e-12)
+    assert "box table in b: middle (0, 0, 1), 2 x 1 x 0.1 m" in viewer.description()
+    viewer.add_box("table", (1, 1, 1), pose=PoseStamped(Header(0, 0, "c"), POSE_OF_B))
+    assert "box table in c: middle (1, 2, 3)" in viewer.description()
+    with pytest.raises(ValueError, match="size must be three numbers above 0; got 1, 0, 1"):
+        viewer.add_box("table", (1, 0, 1))
+
+
+def test_a_grippers_fingers_lie_along_x_and_move_along_y(viewer):
+    viewer.add_gripper("c", opening=0.2)
+    node = next(node for node in drawn(viewer).nodes if node.path == "grippers/c")
+    np.testing.assert_allclose(node.transform, A_T_B @ B_T_C, atol=1e-12)
+    corners = np.array([[x, y, z, 1] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+    left, right = ((solid.matrix @ corners.T)[:3] for solid in node.solids[:2])
+    assert left[1].min() == pytest.approx(0.1) and right[1].max() == pytest.approx(-0.1)  # 0.2 m between them
+    assert left[0].max() > 0 > left[0].min() and np.ptp(left[0]) > np.ptp(left[1])
+    assert "gripper on c: opening 0.2 m" in viewer.description()
+    with pytest.raises(ValueError, match="'d' is not known"):
+        viewer.add_gripper("d")
+    with pytest.raises(ValueError, match="opening must be above 0"):
+        viewer.add_gripper("c", opening=0)
+
+
+def test_ghosts_are_translucent(viewer):
+    viewer.add_frame("d", np.eye(4), ghost=True)
+    viewer.add_point("p", (0, 0, 0), ghost=True)
+    viewer.add_arrow("q", (1, 0, 0), ghost=True)
+    viewer.add_box("r", (1, 1, 1), ghost=True)
+    viewer.add_gripper("c", ghost=True)
+    nodes = {node.path: node for node in drawn(viewer).nodes}
+    for path in ("frames/d", "points/p", "arrows/q", "boxes/r", "grippers/c"):
+        assert all(solid.color[3] < 0.5 for solid in nodes[path].solids), path
+    assert all(solid.color[3] == 1 for solid in nodes["frames/b"].solids)
+    assert Viewer("a", ghost=True).frames["a"].ghost
+
+
+def test_any_known_frame_can_be_the_fixed_one(viewer):
+    viewer.fixed_frame = "c"
+    assert viewer.description().startswith("Scene in the fixed frame c")
+    assert "frame b in a: position (1, 2, 3)" in viewer.description()  # what is known does not change
+    np.testing.assert_allclose(drawn(viewer).seen_from("c")[0], (np.linalg.inv(A_T_B @ B_T_C) @ [0, 0, 0, 1])[:3])
+    with pytest.raises(ValueError, match="'d' is not known. Known frames: a, b, c"):
+        viewer.fixed_frame = "d"
+
+
+def test_the_picture_is_drawn_in_the_fixed_frame(viewer):
+    other = Viewer("c")
+    other.add_frame("b", np.linalg.inv(B_T_C))
+    other.add_frame("a", np.linalg.inv(A_T_B), parent="b", length=1)
+    viewer.fixed_frame = "c"
+    one, same = (np.array(Image.open(io.BytesIO(v.picture())).convert("L")).astype(int) for v in (viewer, other))
+    assert (np.abs(one - same) > 60).mean() < 0.01  # but for the lines and the order of names
+    viewer.fixed_frame = "a"
+    turned = np.array(Image.open(io.BytesIO(viewer.picture())).convert("L")).astype(int)
+    assert (np.abs(one - turned) > 60).mean() > 0.01
+
+
+@pytest.mark.parametrize(
+    "seen_from, right, up", [("above", [1, 0, 0], [0, 1, 0]), ("side", [1, 0, 0], [0, 0, 1]), ("behind", [0, -1, 0], [0, 0, 1])]
+)
+def test_where_a_scene_is_seen_from(seen_from, right, up):
+    camera = Camera(np.concatenate([np.eye(3), -np.eye(3)]), ASPECT, seen_from)
+    middle = camera.project([0, 0, 0])[0]
+    np.testing.assert_allclose((camera.project(right)[0] - middle)[1], 0, atol=0.02)
+    assert (camera.project(right)[0] - middle)[0] > 0.1
+    assert (camera.project(up)[0] - middle)[1] > 0.1
+
+
+def test_room_for_a_text_is_kept_free():
+    points = np.random.default_rng(1).normal(size=(40, 3))
+    places = Camera(points, ASPECT, top=0.3).project(points)[0]
+    assert places[:, 1].max() < 0.7 and places[:, 1].min() > 0 and np.ptp(places[:, 1]) > 0.4
+
+
+def test_what_is_behind_the_camera_has_no_place():
+    camera = Camera([[-1, -1, -1], [1, 1, 1]], ASPECT)
+    assert np.isnan(camera.project(camera.eye + camera.back)[0]).all()
+
+
+def test_looking_at_some_things_leaves_the_others_out_of_view(viewer):
+    viewer.add_frame("far", tft.translation_matrix([50, 0, 0]))
+    viewer.look(at=["b", "c"])
+    seen = drawing.draw_all([viewer], ["b", "c"])[0][0].seen
+    assert np.abs(seen).max() < 10
+    viewer.figure()
+    with pytest.raises(ValueError, match="nothing here is called 'd'. Known names: a, b, c, far"):
+        viewer.look(at=["d"])
+    with pytest.raises(ValueError, match="seen_from must be one of overview, above, side, behind; got 'left'"):
+        viewer.look(seen_from="left")
+    assert viewer.look(seen_from="above")._at == ["b", "c"]  # what is not said stays
+
+
+def test_triangles(viewer):
+    points = [Point(0, 0, 0), Point(1, 0, 0), Point(0, 1, 0)]
+    colors = [ColorRGBA(1, 0, 0, 1)]
+    viewer.publish(marker(Marker.TRIANGLE_LIST, points, colors=colors))
+    (mesh,) = marker_node(viewer).meshes
+    np.testing.assert_allclose(mesh.corners[0], np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]]) * [0.1, 0.2, 0.3])
+    assert mesh.colors[0].tolist() == [[1, 0, 0, 1]] * 3
+    image = np.array(Image.open(io.BytesIO(viewer.look(at=["a"]).picture())).convert("RGB")).astype(int)
+    assert len(image)
+
+
+def test_a_text_is_as_high_as_its_scale_says(viewer):
+    viewer.publish(marker(Marker.TEXT_VIEW_FACING, text="table"))
+    (label,) = marker_node(viewer).labels
+    assert label.height == 0.3
+    camera = Camera([[-1, -1, -1], [1, 1, 1]], ASPECT)
+    near, far = (picture._font_size(label, tft.translation_matrix(d * camera.back), camera) for d in (1, -1))
+    assert near > far > 0
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda v: v.add_frame("d", tft.translation_matrix([1e7, 0, 0])),
+        lambda v: v.add_point("p", (0, -1e7, 0)),
+        lambda v: v.add_arrow("p", (0, 0, 1e300)),
+        lambda v: v.add_box("p", (1, 1, 1), pose=Pose(Point(1e7, 0, 0), Quaternion(0, 0, 0, 1))),
+    ],
+)
+def test_what_is_too_far_away_is_refused(viewer, call):
+    with pytest.raises(ValueError, match="too far away to be drawn: .* Are these metres"):
+        call(viewer)
+
+
+def test_only_the_last_value_of_each_thing_is_kept(viewer):
+    size = len(viewer.figure())
+    for i in range(1000):
+        viewer.add_frame("b", A_T_B @ tft.rotation_matrix(i, [0, 0, 1]), length=1)
+        viewer.publish(marker(Marker.CUBE, ns="n", id=1))
+    viewer.publish(Marker(action=Marker.DELETEALL))
+    viewer.add_frame("b", A_T_B, length=1)
+    assert abs(len(viewer.figure()) - size) < 100
+
+
+def test_a_change_sends_what_changed_and_no_more(viewer):
+    before = page.properties(drawn(viewer).nodes)
+    assert page.changes(before, before) == []
+    viewer.add_frame("c", B_T_C @ B_T_C, parent="b")
+    viewer.add_point("p", (1, 1, 1))
+    after = page.properties(drawn(viewer).nodes)
+    found = commands(page.changes(before, after))
+    assert {c["path"] for c in found if c["type"] == "set_object"} == {"meshcat/points/p/solid0"}
+    moved = {c["path"] for c in found if c["type"] == "set_transform"}
+    assert {"meshcat/frames/c", "meshcat/points/p"} <= moved and "meshcat/frames/b" not in moved
+    assert {c["path"] for c in commands(page.changes(after, before)) if c["type"] == "delete"} >= {"meshcat/points/p"}
 
 
 # Showing it

@@ -81,6 +81,7 @@ def _set_transform(path, matrix):
     return _pack({"type": "set_transform", "path": path, "matrix": np.round(matrix, 9).T.ravel().tolist()})
 
 
+@functools.lru_cache(500)
 def _set_object(path, look):
     """Return the command that puts an object of a certain look at `path`."""
     from meshcat import geometry as g
