@@ -1,6 +1,11 @@
 """The animations that explain, the controls, and the flat plots: what they show at each moment, and what they refuse."""
 
+import base64
+import gzip
+import html
+import json
 import math
+import re
 
 import numpy as np
 import pytest
@@ -104,7 +109,8 @@ def test_an_approach_stops_at_the_pre_grasp_pose_and_a_wrong_one_misses():
         (lambda: animate_chain(STEP, STEP.T), "transform 2 must have the bottom row"),
         (lambda: animate_inverse(np.zeros((4, 4))), "bottom row"),
         (lambda: animate_approach(Pose(), STOP), "no orientation"),
-        (lambda: Viewer().animate(lambda scene, moment: None, seconds=0), "seconds must be above 0"),
+        (lambda: Viewer().animate(lambda scene, moment: None, seconds=0), "seconds must be a number above 0"),
+        (lambda: Viewer().animate(lambda scene, moment: None, seconds=math.inf), "seconds must be a number above 0"),
     ],
 )
 def test_what_cannot_be_animated_is_refused(call, message):
@@ -114,7 +120,7 @@ def test_what_cannot_be_animated_is_refused(call, message):
 
 def test_all_states_of_an_animation_are_in_its_page_and_nothing_is_left_behind():
     viewer = animate_chain(STEP, STEP)
-    _, states, _ = viewer._drawings()
+    _, _, states, _ = viewer._drawings()
     assert len(states) == STATES
     assert "C" not in states[0].frames and "C" in states[-1].frames
     np.testing.assert_allclose(states[-1].frames["C"], STEP @ STEP, atol=1e-9)
@@ -140,9 +146,9 @@ def test_controls_start_in_the_middle_or_at_the_default():
 def test_a_few_states_are_computed_for_notebooks_without_a_kernel():
     motion = Viewer("a").interact(turn, degrees=(0, 90, 30), axis=["x", "z"])._motion
     assert len(motion.settings()) == 8
-    assert motion.settings()[motion.start()] == motion.arguments
+    assert motion.settings()[motion.start] == motion.arguments
     long = Viewer("a").interact(turn, degrees=(0, 360))._motion
-    assert 30 < len(long.settings()) <= MOST_STATES and long.settings()[long.start()] == {"degrees": 180}
+    assert 30 < len(long.settings()) <= MOST_STATES and long.settings()[long.start] == {"degrees": 180}
     many = Viewer("a").interact(lambda scene, p, q: None, p=(0.0, 1.0), q=(0.0, 1.0))._motion
     assert many.settings() == []
 
@@ -163,6 +169,60 @@ def test_an_error_of_the_function_is_raised_at_first_and_shown_later():
 def test_what_is_no_control_says_what_is(choices):
     with pytest.raises(ValueError, match=r"angle=.*(use \(min, max\)|the step must lead)"):
         control("angle", choices)
+
+
+@pytest.mark.parametrize(
+    "choices, default, message",
+    [
+        ((0, 90), 500, "the default 500 is not between min and max"),
+        ((0, 90), None, "the default None is not between min and max"),
+        (["a", "b"], "c", "the default 'c' is not one of these"),
+        ((0, math.inf), 1, "use (min, max)"),
+    ],
+)
+def test_a_default_that_is_not_among_the_choices_is_refused(choices, default, message):
+    with pytest.raises(ValueError, match=re.escape(message)):
+        control("angle", choices, default)
+
+
+def test_controls_take_numbers_of_numpy_and_options_of_any_kind():
+    assert control("n", (np.int64(0), np.int64(4))).values == [0, 1, 2, 3, 4]
+    one, other = np.eye(3), np.zeros(3)
+    assert control("R", [one, other], other).index == 1
+    assert control("any", [None, 1, "1"], "1").index == 2
+
+
+def test_very_many_combinations_are_not_computed():
+    names = [f"p{i}" for i in range(8)]
+    motion = Viewer("a").interact(lambda scene, **values: None, **{name: (0, 360) for name in names})._motion
+    assert motion.settings() == []
+
+
+def test_the_viewers_text_stays_where_a_function_returns_none():
+    viewer = Viewer("a")
+    viewer.text = "hello"
+    assert viewer.interact(lambda scene, n: None, n=[1]).state().text == "hello"
+    assert viewer.interact(lambda scene, n: n, n=[1]).state().text == "1"
+
+
+def test_what_is_looked_at_may_come_later():
+    viewer = animate_chain(STEP, STEP).look(at=["C"])
+    assert "<iframe" in viewer.figure()
+
+
+def test_only_frames_of_every_state_can_be_the_fixed_one():
+    page = animate_chain(STEP, STEP).figure()
+    assert page.count("<iframe") == 1
+    view = told(animate_chain(STEP, STEP))
+    assert [frame["name"] for frame in view["frames"]] == ["A", "B"]
+
+
+def told(viewer):
+    """What the page of a viewer is told, in words and numbers."""
+    source = re.search(r'srcdoc="([^"]*)"', viewer.figure())[1]
+    packed = re.search(r'"scene": "([^"]*)"', html.unescape(source))[1]
+    data = gzip.decompress(base64.b64decode(packed))
+    return json.loads(data[8 : 8 + int.from_bytes(data[4:8], "big")])
 
 
 def test_a_missing_control_is_named():
@@ -210,10 +270,18 @@ def test_a_scene_from_above_is_drawn_in_the_fixed_frame():
     viewer = Viewer("base_link")
     viewer.add_frame("object", OBJECT, length=0.05)
     viewer.add_box("object", (0.04, 0.04, 0.1), frame="object")
+    viewer.add_arrow("up", (0, 1, 0), tail=(0.5, 0, 0))
     viewer.fixed_frame = "object"
     tails = [tuple(tail.round(6)) for tail, _ in arrows(plot_from_above(viewer))]
     base_in_object = np.linalg.inv(viewer.lookup("base_link", "object"))[:2, 3]
+    arrow_in_object = np.linalg.inv(viewer.lookup("base_link", "object")) @ [0.5, 0, 0, 1]
+    assert tuple(arrow_in_object[:2].round(6)) in tails
     assert (0, 0) in tails and tuple(base_in_object.round(6)) in tails
+
+
+def test_a_plot_shows_what_an_animation_or_controls_add():
+    viewer = Viewer("a").interact(turn, degrees=(0, 90, 45))
+    assert [text.get_text() for text in plot_from_above(viewer).texts if text.get_text()] == ["a", "b"]
 
 
 @pytest.mark.parametrize(

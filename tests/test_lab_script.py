@@ -57,6 +57,25 @@ def test_untouched_it_shows_axes_that_are_not_moved(tmp_path):
     assert "LINE_LIST at (0, 0, 0), x axis (1, 0, 0)" in (tmp_path / "transformation_demo.html").read_text()
 
 
+def test_what_an_earlier_node_published_is_not_lost(tmp_path):
+    text = """
+from transform_lab import Header, Marker, Vector3, ColorRGBA, rospy
+publisher = rospy.Publisher("t", Marker, queue_size=1)
+rospy.init_node("one")
+try:
+    publisher.publish(Marker(header=Header(0, 0, "typo"), type=Marker.CUBE))
+except ValueError:
+    print("refused")
+publisher.publish(Marker(header=Header(0, 0, "a"), type=1, scale=Vector3(1, 1, 1), color=ColorRGBA(1, 0, 0, 1)))
+rospy.init_node("two")
+"""
+    result = run_script(text, tmp_path)
+    assert (result.returncode, result.stderr) == (0, "")
+    assert "refused" in result.stdout
+    assert [path.name for path in tmp_path.glob("*.html")] == ["one.html"]
+    assert "marker /0 in a: CUBE" in (tmp_path / "one.html").read_text()
+
+
 def test_in_a_notebook_the_scene_appears_below_the_cell(tmp_path):
     import shutil
 
@@ -77,4 +96,4 @@ def test_what_a_node_cannot_do_here_is_said():
         rospy.init_node("a/b")
     with pytest.raises(TypeError, match="only Marker messages can be seen here; got Viewer"):
         rospy.Publisher("topic", Viewer, queue_size=1)
-    assert rospy.Publisher("topic", Marker, queue_size=1) and not rospy.is_shutdown()
+    assert rospy.Publisher("topic", Marker, queue_size=1)

@@ -3,19 +3,22 @@
 The page (page.js) asks, live.js in the notebook's window passes it on, and the kernel answers with what has changed.
 """
 
-import asyncio
+import threading
 import time
 import uuid
+from functools import cache
 from pathlib import Path
 
 import anywidget
-import traitlets
 from IPython import get_ipython
 
+from .commands import block, changes, delete, properties
 from .drawing import draw
-from .page import block, changes, labels, properties
+from .page import labels
 
 PERIOD = 1 / 40  # seconds; more often than a screen shows it, nothing needs to be sent
+EVERYTHING = ("frames", "links", "points", "arrows", "boxes", "grippers", "markers")
+_links = {}  # by their names
 
 
 def has_kernel():
@@ -24,49 +27,62 @@ def has_kernel():
 
 
 class Channel(anywidget.AnyWidget):
-    """Runs live.js in the notebook's window. It is not displayed itself and keeps nothing but its name."""
+    """Runs live.js in the notebook's window, once for all scenes. It is not displayed and keeps nothing."""
 
     _esm = Path(__file__).with_name("live.js").read_text(encoding="utf-8")
-    scene = traitlets.Unicode().tag(sync=True)
+
+
+@cache
+def channel():
+    """Return the kernel's only Channel."""
+    made = Channel()
+    made.on_msg(lambda _, message, __: message.get("scene") in _links and _links[message["scene"]].receive(message))
+    return made
 
 
 class Link:
-    """Keeps the pages that show a viewer up to date: sends what differs from what was sent last."""
+    """Keeps the pages that show a viewer up to date: sends what differs from what was sent last.
 
-    def __init__(self, viewer, drawing, length):
-        self.name = uuid.uuid4().hex
-        self._viewer, self._length = viewer, length
-        self._base = self._sent = properties(drawing.nodes)
-        self._labels = labels(drawing.nodes)
-        self._last, self._later = 0.0, None
-        self._channel = Channel(scene=self.name)
-        self._channel.on_msg(self._receive)
+    `length` is that of the axes in the pages, in metres. Jupyter may call `receive` in another thread than the cells'.
+    """
+
+    def __init__(self, viewer, motion):
+        self.name, self.length = uuid.uuid4().hex, 1.0
+        self._viewer, self._motion = viewer, motion
+        self._sent, self._last, self._later = {}, 0.0, None
+        self._lock = threading.RLock()
+        _links[self.name] = self
+        channel()
 
     def refresh(self):
         """Send the viewer's changes: at once, or together with those that follow within a 40th of a second."""
-        wait = self._last + PERIOD - time.monotonic()
-        if wait <= 0:
-            self._send(self._sent)
-        elif self._later is None:
-            self._later = asyncio.get_running_loop().call_later(wait, self._send, self._sent)
+        with self._lock:
+            wait = self._last + PERIOD - time.monotonic()
+            if wait <= 0:
+                self._send()
+            elif self._later is None:
+                self._later = threading.Timer(wait, self._send)
+                self._later.start()
 
-    def _receive(self, _, message, __):
-        """Answer a page: one that has just been opened, or one whose controls have moved."""
-        if message.get("ready"):
-            self._send(self._base)
-        elif self._viewer._motion:
-            self._viewer._motion.arguments = self._viewer._motion.at(message["values"])
-            self._send(self._sent, message["number"])
+    def receive(self, message):
+        """Answer a page whose controls have been moved, or one that wants everything, because it has just been opened."""
+        with self._lock:
+            for control, index in zip(self._motion.controls if self._motion else (), message["values"]):
+                control.index = index
+            self._send(message["number"], everything=message["everything"])
 
-    def _send(self, old, number=None):
-        """Send what differs from the properties `old`, as the answer to the question `number`."""
-        if self._later is not None:
-            self._later.cancel()
-            self._later = None
-        drawing = draw(self._viewer.state(), self._length)
-        self._sent, found = properties(drawing.nodes), labels(drawing.nodes)
-        words = {"text": drawing.text, "number": number}
-        if found != self._labels or old is self._base:
-            words["labels"] = self._labels = found
-        self._channel.send(words, [block(changes(old, self._sent))])
-        self._last = time.monotonic()
+    def _send(self, number=None, everything=False):
+        """Send what has changed, or everything, as the answer to the question `number`."""
+        with self._lock:
+            if self._later is not None:
+                self._later.cancel()
+                self._later = None
+            motion, viewer = self._motion, self._viewer
+            drawing = draw(motion.scene(viewer, motion.arguments) if motion else viewer.copy(), self.length)
+            now = properties(drawing.nodes)
+            commands = changes({} if everything else self._sent, now)
+            if everything:
+                commands = [delete(f"meshcat/{kind}") for kind in EVERYTHING] + commands
+            words = {"scene": self.name, "text": drawing.text, "labels": labels(drawing.nodes), "number": number}
+            channel().send(words, [block(commands)])
+            self._sent, self._last = now, time.monotonic()

@@ -29,7 +29,7 @@ function showScene(buffer) {
   viewer.controls.screenSpacePanning = true;
   function look(name) {
     const [eye, target, distance] = fixed.cameras[name];
-    viewer.camera.near = distance / 100;
+    viewer.camera.near = distance * view.nearest;
     viewer.camera.far = distance * 100;
     viewer.camera.position.set(eye[0], eye[2], -eye[1]);
     viewer.controls.target.set(target[0], target[2], -target[1]);
@@ -44,10 +44,10 @@ function showScene(buffer) {
 
   // Words: the labels beside what they name, and the text in the corner.
   const text = document.getElementById("text");
-  let labels = [];
+  let labels = [], last = "";
   function say({labels: found, text: words}) {
-    text.textContent = words ?? "";
-    if (!found) return;
+    text.textContent = words;
+    if (last === (last = JSON.stringify(found))) return;
     labels.forEach(label => label.element.remove());
     labels = found.map(label => {
       const element = document.createElement("div");
@@ -82,9 +82,7 @@ function showScene(buffer) {
       here.scale.lerp(to.scale, t - k);
     }
     const nearest = Math.min(Math.round(t), states.length - 1);
-    if (k !== shown || text.textContent !== view.states[nearest].text) {
-      say({labels: view.states[k].labels ?? view.labels, text: view.states[nearest].text});
-    }
+    say({labels: view.states[k].labels ?? view.labels, text: view.states[nearest].text});
     shown = k;
     settle();
   }
@@ -93,19 +91,20 @@ function showScene(buffer) {
   const row = () => bar.appendChild(document.createElement("div"));
   const choice = (into, title, names, chosen, change) => {
     const select = document.createElement("select");
-    names.forEach((name, i) => select.add(new Option(name, i, false, name === chosen)));
-    select.addEventListener("change", () => change(names[select.value]));
+    names.forEach((name, i) => select.add(new Option(name, i, false, i === chosen)));
+    select.addEventListener("change", () => change(select.selectedIndex));
     labelled(into, title, select);
     return select;
   };
   const first = row();
+  const views = Object.keys(fixed.cameras);
   let seenFrom = view.seenFrom;
-  choice(first, "Fixed frame", view.frames.map(frame => frame.name), fixed.name, name => {
-    fixed = view.frames.find(frame => frame.name === name);
+  choice(first, "Fixed frame", view.frames.map(frame => frame.name), view.fixed, i => {
+    fixed = view.frames[i];
     settle();
     look(seenFrom);
   });
-  choice(first, "Seen from", Object.keys(fixed.cameras), seenFrom, name => look(seenFrom = name));
+  choice(first, "Seen from", views, views.indexOf(seenFrom), i => look(seenFrom = views[i]));
   bar.addEventListener("submit", event => event.preventDefault());
 
   say(view);
@@ -212,37 +211,43 @@ function addPlayer(row, last, seconds, show) {
   title();
 }
 
-// Sliders, drop-downs and check boxes. The kernel computes what they show while it listens; where there is none, in a
-// saved notebook, it is shown from the states that were computed beforehand.
+// Sliders and drop-downs. The kernel computes what they show while it listens; where there is none, in a saved notebook,
+// it is shown from the states that were computed beforehand.
 function addControls(view, row, choice, show, change) {
-  const values = view.controls.map(control => control.value);  // the place of each in its list of values
-  let heard = false, moves = 0, asked = 0, unanswered = 0, since = 0;
+  const values = view.controls.map(control => control.index);  // of each control: which of its values it has
+  let heard = false, moves = 0, asked = 0, unanswered = 0, local = false, timer;
   const post = message => {
-    if (window.parent !== window) window.parent.postMessage({scene: view.live, from: "page", message}, "*");
+    if (window.parent === window || !view.live) return;
+    window.parent.postMessage({from: "page", message: {scene: view.live, number: null, values, ...message}}, "*");
   };
-  function moved() {
-    if (heard && (unanswered === 0 || performance.now() - since < 1000)) ask();
-    else showState();  // there is no kernel, or it is busy
+  const greet = () => post({everything: true});
+  function moved(i, value) {
+    values[i] = value;
+    moves++;
+    heard ? ask() : showState();
   }
   function ask() {  // a few questions at a time, so that no queue builds up
+    clearTimeout(timer);
+    timer = setTimeout(showState, 1000);  // the kernel is busy or gone
     if (unanswered >= 3 || asked === moves) return;
-    if (unanswered++ === 0) since = performance.now();
+    unanswered++;
     asked = moves;
-    post({values, number: asked});
+    post({everything: local, number: asked});
+    local = false;
   }
-  function showState() {
+  function showState() {  // the nearest of those computed beforehand
+    unanswered = 0;
     if (!view.states.length) return note.hidden = false;
+    local = true;
     let state = 0;
-    view.controls.forEach((control, i) => {  // the nearest of those computed
-      const places = control.places, to = places.reduce((best, place, j) =>
-        Math.abs(place - values[i]) < Math.abs(places[best] - values[i]) ? j : best, 0);
-      state = state * places.length + to;
+    view.controls.forEach(({sampled}, i) => {
+      const distance = sampled.map(value => Math.abs(value - values[i]));
+      state = state * sampled.length + distance.indexOf(Math.min(...distance));
     });
     show(state);
   }
   view.controls.forEach((control, i) => {
     const into = row();
-    const set = place => { values[i] = place; moves++; moved(); };
     if (control.kind === "slider") {
       const slider = document.createElement("input"), output = document.createElement("output");
       Object.assign(slider, {type: "range", min: 0, max: control.values.length - 1, value: values[i]});
@@ -251,27 +256,27 @@ function addControls(view, row, choice, show, change) {
         output.textContent = control.values[slider.value];
         slider.setAttribute("aria-valuetext", output.textContent);
       };
-      slider.addEventListener("input", () => { write(); set(+slider.value); });
+      slider.addEventListener("input", () => { write(); moved(i, +slider.value); });
       write();
       labelled(into, control.name, slider, output).className = "wide";
     } else {
-      const chosen = control.values[control.value];
-      choice(into, control.name, control.values, chosen, value => set(control.values.indexOf(value))).name = control.name;
+      choice(into, control.name, control.values, values[i], value => moved(i, value)).name = control.name;
     }
   });
   const note = Object.assign(document.createElement("em"), {textContent: "Run the cell to move this.", hidden: true});
   if (view.controls.length) document.getElementById("bar").lastChild.append(note);
-  if (!view.live) return;
   window.addEventListener("message", ({data}) => {
-    if (data?.scene !== view.live || data.from !== "kernel") return;
-    if (data.message.hello) return post({ready: true});
+    if (data?.from !== "kernel") return;
+    const {message, packets} = data;
+    if (message.hello) return greet();
+    if (message.scene !== view.live) return;
     heard = true;
     note.hidden = true;
-    change({...data.message, packets: data.packets});
-    if (data.message.number == null) return;  // not an answer, but what the kernel had to say of its own
+    change({...message, packets});
+    if (message.number === null) return;  // not an answer, but what the kernel had to say of its own
+    clearTimeout(timer);
     unanswered = Math.max(unanswered - 1, 0);
-    since = performance.now();
-    ask();
+    if (moves !== asked) ask();
   });
-  post({ready: true});
+  greet();
 }

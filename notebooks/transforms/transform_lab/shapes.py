@@ -1,7 +1,7 @@
 """What a scene is made of: solid shapes, points, lines and labels, each in the coordinates of a node.
 
-A node is a place in the scene: its transform is given in the fixed frame, and what hangs on it moves with it. Both the
-interactive page and the still picture are drawn from the same nodes.
+A node is a place in the scene: its transform is given in the scene's root frame, and what hangs on it moves with it.
+Both the interactive page and the still picture are drawn from the same nodes.
 """
 
 from dataclasses import dataclass, field
@@ -10,7 +10,7 @@ from urllib.parse import quote
 import numpy as np
 
 from .messages import Marker
-from .validation import near, numbers
+from .validation import numbers, within_reach
 
 X_RED, Y_GREEN, Z_BLUE = (0.84, 0.12, 0.12, 1), (0.05, 0.58, 0.15, 1), (0.12, 0.30, 0.92, 1)
 DARK = (0.15, 0.15, 0.2, 1)
@@ -72,7 +72,7 @@ BESIDE += [(-1.2, -1.8), (1.2, -1.8), (-1.2, 1.8), (1.2, 1.8), (0, 2.2), (0, -3.
 
 @dataclass
 class Node:
-    """A place in the scene: `transform` is 4x4 in the fixed frame; `path` names it, as in "frames/gripper"."""
+    """A place in the scene: `transform` is 4x4 in the root frame; `path` names it, as in "frames/gripper"."""
 
     path: str
     transform: np.ndarray
@@ -155,7 +155,7 @@ def gripper_node(gripper, transform):
 def xyz(message):
     """Return the x, y, z of a Point or Vector3 as an array."""
     kind = type(message).__name__
-    return near(numbers([message.x, message.y, message.z], kind, lengths=(3,)), kind)
+    return within_reach(numbers([message.x, message.y, message.z], kind, lengths=(3,)), kind)
 
 
 def translucent(color):
@@ -219,7 +219,7 @@ def draw_marker(marker, node):
         if len(marker.colors) * 3 == len(points):  # one colour for each triangle
             colors = [rgba(c) for c in marker.colors for _ in range(3)]
         if points:
-            corners = near(np.reshape(points, (-1, 3, 3)) * size, "a triangle's corner")
+            corners = within_reach(np.reshape(points, (-1, 3, 3)) * size, "a triangle's corner")
             node.meshes.append(Mesh(corners, np.reshape(colors, (-1, 3, 4))))
     else:
         raise ValueError(f"markers of type {marker_type(marker)} are not drawn yet; these are: {', '.join(DRAWN)}")

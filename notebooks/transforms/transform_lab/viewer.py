@@ -4,6 +4,7 @@ Nothing is started and nothing listens: the scene is drawn into the notebook its
 """
 
 import inspect
+import numbers
 import os
 
 from .camera import VIEWS, Camera
@@ -23,7 +24,7 @@ class Viewer(Scene):
         viewer.add_point("object", p_in_camera, frame="camera")
         viewer                                   # as the last line of a cell, or viewer.show()
 
-    `fixed_frame` is the frame in which the others are described and the scene is first looked at; in the picture, or by
+    `fixed_frame` is the root of the tree of frames, and what the scene is first looked at from; in the picture, or by
     `viewer.fixed_frame = "camera"`, any other can be made the fixed one, as in RViz. The x axes are red, y green, z blue,
     and lettered. Drag to turn, click and use the wheel to zoom, drag with the right button to move.
 
@@ -33,9 +34,8 @@ class Viewer(Scene):
 
     def __init__(self, fixed_frame="world", ghost=False):
         super().__init__(fixed_frame, ghost)
-        self._seen_from, self._at = "overview", None
-        self._motion = None
-        self._links = []  # to the live figures that show it
+        self._seen_from, self.at = "overview", None
+        self._motion = self._link = None  # what moves it, and what keeps its live figures up to date
 
     # Looking at it
 
@@ -50,12 +50,13 @@ class Viewer(Scene):
         if seen_from not in VIEWS:
             raise ValueError(f"seen_from must be one of {', '.join(VIEWS)}; got {seen_from!r}")
         at = [at] if isinstance(at, str) else at
-        scene = self.state()
-        known = [*scene.frames, *scene.points, *scene.arrows, *scene.boxes]
-        for name in at or ():
-            if name not in known:
-                raise ValueError(f"look: nothing here is called {name!r}. Known names: {', '.join(known)}")
-        self._seen_from, self._at = seen_from, at or self._at
+        if at:
+            scene = self.state()
+            known = [*scene.frames, *scene.points, *scene.arrows, *scene.boxes]
+            for name in at:
+                if name not in known:
+                    raise ValueError(f"look: nothing here is called {name!r}. Known names: {', '.join(known)}")
+        self._seen_from, self.at = seen_from, at or self.at
         return self
 
     def animate(self, function, seconds=4):
@@ -65,10 +66,9 @@ class Viewer(Scene):
         viewer holds, what there is to see then. What it returns is shown as text. The picture shows the end. Returns the
         viewer.
         """
-        if not seconds > 0:
-            raise ValueError(f"animate: seconds must be above 0; got {seconds!r}")
-        motion = Motion(lambda scene, moment: function(scene, moment), {"moment": 1.0}, seconds=float(seconds))
-        return self._move(motion)
+        if not isinstance(seconds, numbers.Real) or not 0 < seconds < 3600:
+            raise ValueError(f"animate: seconds must be a number above 0; got {seconds!r}")
+        return self._move(Motion(lambda scene, moment: function(scene, moment), seconds=float(seconds)))
 
     def interact(self, function, **controls):
         """Give the scene sliders and drop-down lists, one for each further argument of `function`. Returns the viewer.
@@ -82,28 +82,26 @@ class Viewer(Scene):
 
         The controls are given as to ipywidgets' `interact`: (min, max) or (min, max, step) is a slider, a list is a
         drop-down list, True or False a choice of the two; they start at the function's defaults. `scene` holds what the
-        viewer holds, and takes what the viewer takes. What the function returns is shown as text, and so is an error that
-        it raises.
+        viewer holds; add to it with its `add_…` and `publish`. What the function returns is shown as text, and so is an
+        error that it raises.
 
         In a notebook whose kernel runs, the function is called while the student drags. In a saved one the controls show
         what was computed beforehand: at most 48 states; more combinations than that need the kernel.
         """
         empty = inspect.Parameter.empty
         parameters = list(inspect.signature(function).parameters.values())[1:]
-        defaults = {parameter.name: parameter.default for parameter in parameters}
+        defaults = {p.name: p.default for p in parameters if p.kind not in (p.VAR_POSITIONAL, p.VAR_KEYWORD)}
         if missing := [name for name in defaults if name not in controls and defaults[name] is empty]:
             raise ValueError(f"interact: give a control for {', '.join(missing)}, such as {missing[0]}=(0, 90)")
         if not controls:
             raise ValueError("interact: give at least one control, such as degrees=(0, 90)")
         made = [control(name, choices, defaults.get(name, empty)) for name, choices in controls.items()]
-        motion = Motion(function, {}, made)
-        motion.arguments = motion.at([one.place for one in made])
-        return self._move(motion)
+        return self._move(Motion(function, made))
 
     def _move(self, motion):
         """Keep `motion`; an error that its function raises at the start is the caller's."""
         motion.scene(self, motion.arguments, strict=True)
-        self._motion = motion
+        self._motion, self._link = motion, None
         return self
 
     def state(self):
@@ -114,8 +112,8 @@ class Viewer(Scene):
         return Scene.description(self.state())
 
     def _changed(self):
-        for link in self._links:
-            link.refresh()
+        if self._link:
+            self._link.refresh()
 
     # Showing it
 
@@ -123,7 +121,7 @@ class Viewer(Scene):
         """Display the scene as it is now, below the cell.
 
         A `live` one follows: what is added to the viewer later on shows there at once, as long as the kernel runs. Use
-        it with ipywidgets of your own.
+        it with ipywidgets of your own. The camera stays where it is, and so does the list of frames to be the fixed one.
         """
         from IPython.display import display
 
@@ -133,7 +131,7 @@ class Viewer(Scene):
         """Return the scene as a page of its own (text): write it to a file and open that in a browser."""
         return (
             '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>Frames</title></head>'
-            f'<body style="font-family: sans-serif">{self.figure()}</body></html>\n'
+            f'<body style="font-family: sans-serif">{self._figure(None)}</body></html>\n'
         )
 
     def _repr_mimebundle_(self, include=None, exclude=None):
@@ -153,42 +151,42 @@ class Viewer(Scene):
 
         With controls, or if `live`, the page asks the kernel for what to show, if it runs in a notebook with a kernel.
         """
+        if not live and not (self._motion and self._motion.controls):
+            return self._figure(None)
+        from .live import Link, has_kernel
+
+        if has_kernel() and self._link is None:
+            self._link = Link(self, self._motion)
+        return self._figure(self._link)
+
+    def _figure(self, link):
         from . import page
 
-        drawing, states, length = self._drawings()
-        controls = self._motion.controls if self._motion else []
-        link = self._link(drawing, length) if live or controls else None
-        if link and not states:
-            drawing.leave_room(length)
+        scene, drawing, states, length = self._drawings()
+        if link:
+            link.length = length
+            if not states:
+                drawing.leave_room(length)
         body = page.render(drawing, self.fixed_frame, self._seen_from, self._motion, states, link and link.name)
-        rows = 1 + len(controls) + bool(self._motion and self._motion.seconds)
         still = self._picture(drawing, page.text_height([drawing, *states]))
-        return page.over_picture(body, still, self.description(), self._caption(drawing, length), rows)
+        caption = self._caption(scene, drawing, length)
+        rows = 1 + (len(self._motion.controls) + bool(self._motion.seconds) if self._motion else 0)
+        return page.over_picture(body, still, Scene.description(scene), caption, rows)
 
     def picture(self):
         """Return the scene as a still picture: the bytes of a PNG file."""
         from . import page
 
-        drawing, states, _ = self._drawings()
+        _, drawing, states, _ = self._drawings()
         return self._picture(drawing, page.text_height([drawing, *states]))
 
     def _drawings(self):
-        """Return the Drawing of what is shown, those of the states computed beforehand, and the length of axes."""
+        """Return the Scene that is shown, its Drawing, those of the states computed beforehand, the length of axes."""
         from .drawing import draw_all
 
-        settings = self._motion.settings() if self._motion else []
-        scenes = [self.state(), *(self._motion.scene(self, arguments) for arguments in settings)]
-        (drawing, *states), length = draw_all(scenes, self._at)
-        return drawing, states, length
-
-    def _link(self, drawing, length):
-        """Return a new Link to the kernel, or None where there is no kernel."""
-        from .live import Link, has_kernel
-
-        if not has_kernel():
-            return None
-        self._links.append(Link(self, drawing, length))
-        return self._links[-1]
+        scene = self.state()
+        (drawing, *states), length = draw_all([scene, *(self._motion.scenes(self) if self._motion else ())], self.at)
+        return scene, drawing, states, length
 
     def _picture(self, drawing, top):
         from . import page, picture
@@ -199,13 +197,13 @@ class Viewer(Scene):
         nodes = in_frame(drawing.nodes, drawing.frames[self.fixed_frame])
         return picture.render(nodes, grid(seen)[0], camera, drawing.text)
 
-    def _caption(self, drawing, length):
+    def _caption(self, scene, drawing, length):
         """Return a line on what is to be seen and how to turn it."""
         from .drawing import grid
 
-        lengths = sorted({frame.length or length for frame in self.state().frames.values()})
+        lengths = {frame.length or length for frame in scene.frames.values()}
         _, step = grid(drawing.seen_from(self.fixed_frame))
         return (
-            f"Fixed frame {self.fixed_frame}. Axes {' or '.join(f'{v:g}' for v in lengths)} m long: X red, Y green,"
-            f" Z blue. Grid at z = 0, squares of {step:g} m. Drag to turn, scroll to zoom."
+            f"Fixed frame {self.fixed_frame}. Axes {' to '.join(f'{v:g}' for v in sorted({min(lengths), max(lengths)}))} m long: X red, Y green,"
+            f" Z blue. Grid at z = 0, squares of {step:g} m. Drag to turn, click and scroll to zoom."
         )

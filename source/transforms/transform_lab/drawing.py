@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from . import tft
 from .scene import marker_pose
 from .shapes import (
     GREY,
@@ -23,7 +24,7 @@ from .shapes import (
 
 @dataclass
 class Drawing:
-    """A scene as it is drawn, in the frame that its viewer was made with.
+    """A scene as it is drawn, in its root frame, the one that its viewer was made with.
 
     `frames` has the 4x4 transform of each frame by its name, `seen` the points (Nx3) that are to be in view.
     """
@@ -59,6 +60,8 @@ def draw_all(scenes, at=None):
     The length is the largest that was asked for, or a round number that fits the scenes.
     """
     drawings = [_draw(scene, at) for scene in scenes]
+    if not any(len(drawing.seen) for drawing in drawings):
+        raise ValueError(f"none of what is to be looked at is there: {', '.join(at)}")
     given = [frame.length for scene in scenes for frame in scene.frames.values() if frame.length]
     size = np.ptp(np.concatenate([drawing.seen for drawing in drawings]), axis=0).max()
     length = max(given) if given else round_number(0.5 * size) if size > 0 else 1.0
@@ -76,7 +79,7 @@ def _draw(scene, at):
         if marker.color.a > 0 or marker.colors:
             draw_marker(marker, node)
         nodes.append(node)
-    ends = _corners(nodes) if at is None else []
+    ends = [np.empty((0, 3))] + (_corners(nodes) if at is None else [])
     for name, box in scene.boxes.items():
         color = translucent(box.color) if box.ghost else box.color
         node = Node(path("boxes", name), where[box.frame] @ box.transform, [placed("box", (0, 0, 0), box.size, color)])
@@ -119,9 +122,7 @@ def _add_sized(scene, drawing, length, at):
 
 def in_frame(nodes, root_T_frame):
     """Return the nodes with their transforms described in another frame."""
-    R, p = root_T_frame[:3, :3], root_T_frame[:3, 3]
-    frame_T_root = np.eye(4)
-    frame_T_root[:3, :3], frame_T_root[:3, 3] = R.T, -R.T @ p
+    frame_T_root = tft.inverse_matrix(root_T_frame)
     return [replace(node, transform=frame_T_root @ node.transform) for node in nodes]
 
 

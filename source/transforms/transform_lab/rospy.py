@@ -12,7 +12,7 @@ from pathlib import Path
 from .messages import Marker
 from .viewer import Viewer
 
-__all__ = ["Publisher", "Time", "init_node", "is_shutdown", "loginfo", "logwarn", "sleep"]
+__all__ = ["Publisher", "Time", "init_node", "loginfo", "sleep"]
 
 
 class _Node:
@@ -22,10 +22,9 @@ class _Node:
         self.name, self.viewer, self.shown, self.watching = "rviz", None, True, False
 
     def publish(self, marker):
-        if self.viewer is None:
-            self.viewer = Viewer(marker.header.frame_id or "map")
-        self.viewer.publish(marker)
-        self.shown = False
+        viewer = self.viewer or Viewer(marker.header.frame_id or "map")
+        viewer.publish(marker)
+        self.viewer, self.shown = viewer, False
         self.watch()
 
     def watch(self):
@@ -48,6 +47,9 @@ class _Node:
             self.viewer.show()
 
     def write(self):
+        if self.shown:
+            return
+        self.shown = True
         path = Path(f"{self.name}.html")
         path.write_text(self.viewer.html(), encoding="utf-8")
         print(f"{path}: open it in a browser to see what was published.")
@@ -67,8 +69,10 @@ def _shell():
 
 def init_node(name, **options):
     """Start the node `name` (a text without slashes or spaces) with an empty view; `options` have no effect here."""
-    if not name or not name.replace("_", "").isalnum():
+    if not isinstance(name, str) or not name.replace("_", "").isalnum():
         raise ValueError(f"init_node: a node's name is made of letters, digits and _; got {name!r}")
+    if not _shell():
+        _node.write()  # what an earlier node published
     _node.name, _node.viewer, _node.shown = name, None, True
 
 
@@ -110,18 +114,4 @@ def sleep(duration):
 
 def loginfo(message, *args):
     """Print a message as rospy does; with `args`, it is a template as for the % operator."""
-    _log("INFO", message, args)
-
-
-def logwarn(message, *args):
-    """Print a warning as rospy does; with `args`, it is a template as for the % operator."""
-    _log("WARN", message, args)
-
-
-def _log(level, message, args):
-    print(f"[{level}] [{time.time():.6f}]: {str(message) % args if args else message}")
-
-
-def is_shutdown():
-    """Return False: a notebook's node is never shut down."""
-    return False
+    print(f"[INFO] [{time.time():.6f}]: {str(message) % args if args else message}")

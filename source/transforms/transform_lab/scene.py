@@ -8,7 +8,7 @@ import numpy as np
 from . import tft
 from .messages import Marker
 from .shapes import BROWN, ORANGE, PURPLE, STEEL, Node, draw_marker, marker_type, rgba, xyz
-from .validation import FARTHEST, near, numbers, rigid_transform, row_text
+from .validation import FARTHEST, numbers, rigid_transform, row_text, within_reach
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,11 +67,10 @@ class Scene:
     """Frames in a tree, as TF keeps them, and what is given in these frames; all lengths are in metres."""
 
     def __init__(self, fixed_frame="world", ghost=False):
-        self.root = fixed_frame
+        self.root = _name(fixed_frame, "fixed_frame")
         self.frames = {fixed_frame: Frame(None, np.eye(4), ghost=ghost)}
         self.points, self.arrows, self.boxes, self.grippers, self.markers = {}, {}, {}, {}, {}
-        self.text = ""
-        self._fixed_frame = fixed_frame
+        self._text, self._fixed_frame = "", fixed_frame
 
     def copy(self):
         """Return a Scene of the same things; what is added to the one does not show in the other."""
@@ -90,19 +89,29 @@ class Scene:
         self._fixed_frame = self._known(name, "fixed_frame: the frame")
         self._changed()
 
+    @property
+    def text(self):
+        """What is shown in the upper left corner."""
+        return self._text
+
+    @text.setter
+    def text(self, text):
+        self._text = str(text)
+        self._changed()
+
     # Filling the scene
 
     def add_frame(self, name, transform, parent=None, length=None, ghost=False):
         """Add the frame `name`, or replace it: `transform` describes it in the frame `parent`.
 
         `transform` is a 4x4 homogeneous transform parent_T_name, a Pose, or a PoseStamped, whose header.frame_id then
-        is the parent. The parent must be known; by default it is the frame that the viewer was made with. `length` is
+        is the parent. The parent must be known; by default it is the root, the frame that the viewer was made with. `length` is
         how long the axes are drawn, in metres; by default the size of the scene decides. A `ghost` is translucent.
 
         Raises ValueError for a parent that is not known, and for what is no rigid transform, naming the property that
         fails: shape, NaN, bottom row, columns at right angles and of length 1, determinant +1, quaternion of length 1.
         """
-        what = f"add_frame({name!r})"
+        what = f"add_frame({_name(name, 'add_frame: the name')!r})"
         if name == self.root:
             raise ValueError(f"{what}: {name!r} is the frame this viewer was made with; the others are described in it")
         parent, matrix = self._placed(parent, transform, what, "parent")
@@ -111,18 +120,17 @@ class Scene:
             if ancestor == name:
                 raise ValueError(f"{what}: {parent!r} is itself described in {name!r}; that is a circle")
             ancestor = self.frames[ancestor].parent
-        if length is not None and not 0 < length <= FARTHEST:
-            raise ValueError(f"{what}: length must be above 0; got {length!r}")
+        length = None if length is None else _size(length, f"{what}: length")
         self.frames[name] = Frame(parent, matrix, length, ghost)
         self._changed()
 
     def add_point(self, name, position, frame=None, color=ORANGE, ghost=False):
         """Add the point `name`, or replace it: `position` is a Point or 3 numbers in `frame`.
 
-        By default the frame is the one that the viewer was made with. Four numbers are taken as homogeneous
+        By default the frame is the root. Four numbers are taken as homogeneous
         coordinates. `color` is a ColorRGBA, or 3 or 4 numbers from 0 to 1. A `ghost` is translucent, and larger.
         """
-        frame = self._known(frame, f"add_point({name!r}): the frame")
+        frame = self._known(frame, f"add_point({_name(name, 'add_point: the name')!r}): the frame")
         position = _position(position, f"add_point({name!r}): the position")
         self.points[name] = Point(frame, position, rgba(color), ghost)
         self._changed()
@@ -132,7 +140,7 @@ class Scene:
 
         By default it starts at the origin of the frame; `frame`, `color` and `ghost` as in `add_point`.
         """
-        frame = self._known(frame, f"add_arrow({name!r}): the frame")
+        frame = self._known(frame, f"add_arrow({_name(name, 'add_arrow: the name')!r}): the frame")
         tail, tip = (_position(p, f"add_arrow({name!r}): the {end}") for p, end in ((tail, "tail"), (tip, "tip")))
         self.arrows[name] = Arrow(frame, tail, tip, rgba(color), ghost)
         self._changed()
@@ -143,9 +151,9 @@ class Scene:
         Its middle is at `pose` in `frame`: a Pose, a PoseStamped or a 4x4 transform, by default the frame's origin.
         `frame`, `color` and `ghost` as in `add_point`.
         """
-        what = f"add_box({name!r})"
+        what = f"add_box({_name(name, 'add_box: the name')!r})"
         frame, matrix = self._placed(frame, np.eye(4) if pose is None else pose, what, "frame")
-        size = numbers(size, f"{what}: the size", lengths=(3,))
+        size = within_reach(numbers(size, f"{what}: the size", lengths=(3,)), f"{what}: the size")
         if not (size > 0).all():
             raise ValueError(f"{what}: the size must be three numbers above 0; got {row_text(size)}")
         self.boxes[name] = Box(frame, matrix, size, rgba(color), ghost)
@@ -158,8 +166,7 @@ class Scene:
         go with the opening. `color` and `ghost` as in `add_point`.
         """
         frame = self._known(frame, f"add_gripper({frame!r}): the frame")
-        if not 0 < opening <= FARTHEST:
-            raise ValueError(f"add_gripper({frame!r}): opening must be above 0; got {opening!r}")
+        opening = _size(opening, f"add_gripper({frame!r}): opening")
         self.grippers[frame] = Gripper(frame, opening, rgba(color), ghost)
         self._changed()
 
@@ -197,7 +204,7 @@ class Scene:
         return tft.inverse_matrix(target) @ source
 
     def in_root(self, name):
-        """Return the 4x4 transform of a known frame in the frame that the viewer was made with."""
+        """Return the 4x4 transform of a known frame in the root frame."""
         frame = self.frames[name]
         return np.eye(4) if frame.parent is None else self.in_root(frame.parent) @ frame.transform
 
@@ -247,8 +254,23 @@ class Scene:
             matrix = _pose_matrix(pose, f"{what}: the pose")
         else:
             matrix = rigid_transform(pose, f"{what}: the transform")
-        near(matrix[:3, 3], f"{what}: the translation")
+        within_reach(matrix[:3, 3], f"{what}: the translation")
         return frame, matrix
+
+
+def _name(name, what):
+    """Return a name, which must be a text that is not empty."""
+    if not isinstance(name, str) or not name:
+        raise TypeError(f"{what} must be a text, such as 'base_link'; got {name!r}")
+    return name
+
+
+def _size(value, what):
+    """Return a length in metres, a number above 0."""
+    size = numbers(value, what)
+    if size.shape != () or not 0 < size <= FARTHEST:
+        raise ValueError(f"{what} must be a number of metres above 0; got {value!r}")
+    return float(size)
 
 
 def _position(value, what):
@@ -258,7 +280,7 @@ def _position(value, what):
     coordinates = numbers(value, what, lengths=(3, 4))
     if len(coordinates) == 4 and coordinates[3] != 1:
         raise ValueError(f"{what} has four numbers, so the last must be 1; it is {coordinates[3]:g}")
-    return near(coordinates[:3], what)
+    return within_reach(coordinates[:3], what)
 
 
 def _pose_matrix(pose, what):
@@ -273,9 +295,8 @@ def _pose_matrix(pose, what):
     if abs(length - 1) > 1e-3:
         advice = " A fresh Quaternion() is no orientation; no rotation is 0, 0, 0, 1." if length == 0 else ""
         raise ValueError(f"{what}'s orientation must be a quaternion of length 1; its length is {length:.4g}.{advice}")
-    matrix = tft.quaternion_matrix(quaternion)
-    matrix[:3, 3] = numbers([p.x, p.y, p.z], f"{what}'s position", lengths=(3,))
-    return matrix
+    position = numbers([p.x, p.y, p.z], f"{what}'s position", lengths=(3,))
+    return tft.translation_matrix(position) @ tft.quaternion_matrix(quaternion)
 
 
 def marker_pose(marker):
@@ -285,7 +306,7 @@ def marker_pose(marker):
         matrix = _pose_matrix(marker.pose, what)
     else:
         matrix = tft.translation_matrix(xyz(marker.pose.position))
-    near(matrix[:3, 3], f"{what}'s position")
+    within_reach(matrix[:3, 3], f"{what}'s position")
     return matrix
 
 

@@ -74,7 +74,7 @@ def rigid_transform(matrix, what):
     return T
 
 
-def near(position, what):
+def within_reach(position, what):
     """Return `position` (an array, in metres) if it can be drawn; raise ValueError for what is too far away."""
     if np.abs(position).max(initial=0) > FARTHEST:
         raise ValueError(f"{what} is too far away to be drawn: ({row_text(position)}). Are these metres?")
