@@ -38,7 +38,7 @@ OLD_HAND = Pose(Point(0.5, -0.1, 0.7), Quaternion(0, 0, 0.38268343, 0.92387953))
 
 def at(viewer, moment):
     """The scene of an animation at a moment."""
-    return viewer._motion.scene(viewer, {"moment": moment}, strict=True)
+    return viewer._motion.scene(viewer, moment, strict=True)
 
 
 # Animations
@@ -107,6 +107,9 @@ def test_an_approach_stops_at_the_pre_grasp_pose_and_a_wrong_one_misses():
         (lambda: animate_chain(), "one transform or more"),
         (lambda: animate_chain(STEP, STEP, names="AB"), "one name more; got 2, 2"),
         (lambda: animate_chain(STEP, STEP.T), "transform 2 must have the bottom row"),
+        (lambda: animate_chain([STEP, STEP]), r"write animate_chain\(\*transforms\)"),
+        (lambda: animate_rotation(np.eye(3), names=("a",)), "must be those of two frames"),
+        (lambda: animate_inverse(STEP, names=("a",)), "must be those of two frames"),
         (lambda: animate_inverse(np.zeros((4, 4))), "bottom row"),
         (lambda: animate_approach(Pose(), STOP), "no orientation"),
         (lambda: Viewer().animate(lambda scene, moment: None, seconds=0), "seconds must be a number above 0"),
@@ -223,6 +226,37 @@ def told(viewer):
     packed = re.search(r'"scene": "([^"]*)"', html.unescape(source))[1]
     data = gzip.decompress(base64.b64decode(packed))
     return json.loads(data[8 : 8 + int.from_bytes(data[4:8], "big")])
+
+
+@pytest.mark.parametrize(
+    "call, message",
+    [
+        (lambda v: v.animate(lambda moment: None), r"the function must take \(scene, moment\)"),
+        (lambda v: v.interact(lambda x: None, x=(0, 3)), r"the function must take \(scene, x\)"),
+        (lambda v: v.animate(3), "must be a function; got int"),
+    ],
+)
+def test_a_function_of_other_arguments_is_refused(call, message):
+    with pytest.raises(TypeError, match=message):
+        call(Viewer("a"))
+
+
+def test_a_function_that_adds_to_the_viewer_is_told():
+    viewer = Viewer("a")
+    with pytest.raises(ValueError, match="must add to the scene it is given, and not to the viewer"):
+        viewer.animate(lambda scene, moment: viewer.add_frame("b", np.eye(4)))
+
+
+def test_a_viewer_knows_what_its_controls_add():
+    viewer = Viewer("a").interact(turn, degrees=(0, 90, 45))
+    np.testing.assert_allclose(viewer.lookup("a", "b"), tft.rotation_matrix(math.radians(45), [0, 0, 1]))
+    viewer.fixed_frame = "b"
+    assert "<iframe" in viewer.figure()
+
+
+def test_numbers_of_a_slider_are_written_in_full():
+    assert control("n", (1000000, 1000010)).as_json()["values"][3] == "1000003"
+    assert control("x", (0.0, 1e-9)).as_json()["values"][1] == "1e-11"
 
 
 def test_a_missing_control_is_named():

@@ -96,4 +96,8 @@ def test_what_a_node_cannot_do_here_is_said():
         rospy.init_node("a/b")
     with pytest.raises(TypeError, match="only Marker messages can be seen here; got Viewer"):
         rospy.Publisher("topic", Viewer, queue_size=1)
+    with pytest.raises(AttributeError, match="rospy.Rate is not here. There is what the lab's script uses: Publisher"):
+        rospy.Rate(10)
+    with pytest.raises(ValueError, match="header.frame_id is empty: set it"):
+        rospy.Publisher("topic", Marker).publish(Marker(type=Marker.CUBE))
     assert rospy.Publisher("topic", Marker, queue_size=1)

@@ -46,7 +46,7 @@ def drawn(viewer):
 
 def marker_node(viewer):
     """The node of the marker that was published first."""
-    return next(node for node in drawn(viewer).nodes if node.path == "markers/0")
+    return next(node for node in drawn(viewer).nodes if node.path.startswith("markers/"))
 
 
 def marker(kind, points=(), **fields):
@@ -150,11 +150,11 @@ def test_circles_and_the_fixed_frame_are_refused(viewer):
         viewer.add_frame("b", np.eye(4), parent="c")
     with pytest.raises(ValueError, match="'a' is the frame this viewer was made with"):
         viewer.add_frame("a", np.eye(4))
-    with pytest.raises(ValueError, match="length must be a number of metres above 0; got 0"):
+    with pytest.raises(ValueError, match="length must be a number of metres from 1e-05 to 1e\\+06; got 0"):
         viewer.add_frame("d", np.eye(4), length=0)
 
 
-@pytest.mark.parametrize("name", [3, None, ""])
+@pytest.mark.parametrize("name", [3, None, "", ("a", "b"), np.eye(4)], ids=lambda name: type(name).__name__)
 def test_names_are_texts(viewer, name):
     for add in (
         lambda: viewer.add_frame(name, np.eye(4)),
@@ -163,7 +163,7 @@ def test_names_are_texts(viewer, name):
         lambda: viewer.add_box(name, (1, 1, 1)),
         lambda: Viewer(name),
     ):
-        with pytest.raises(TypeError, match=f"must be a text, such as 'base_link'; got {name!r}"):
+        with pytest.raises(TypeError, match="must be a text, such as 'base_link'; got "):
             add()
 
 
@@ -222,9 +222,45 @@ def test_points_and_text_markers():
     assert node.labels[0].text == "table"
 
 
+def changed(**fields):
+    """A CUBE in frame a with some fields of another kind, as messages take any value."""
+    cube = marker(Marker.CUBE, ns="n", id=7)
+    for name, value in fields.items():
+        setattr(cube, name, value)
+    return cube
+
+
 @pytest.mark.parametrize(
     "wrong, message",
     [
+        (changed(color=(1, 0, 0, 1)), "marker n/7: color must be a ColorRGBA; got tuple"),
+        (changed(text=5), "marker n/7: text must be a text"),
+        (changed(id=[1]), "id, type and action whole numbers"),
+        (changed(points=[[0, 0, 0]]), r"marker n/7: points\[0\] must be a Point; got list"),
+        (changed(points=None), "marker n/7: points must be a list of Points; got NoneType"),
+        (changed(scale=0.1), "marker n/7: scale must be a Vector3; got float"),
+        (changed(pose=A_T_B), "marker n/7: pose must be a Pose; got ndarray"),
+        (changed(pose=Pose(np.zeros(3), Quaternion())), "marker n/7: .* must be a Point, such as Point"),
+        (changed(header="a"), "marker n/7: header must be a Header; got str"),
+        (changed(header=SimpleNamespace(frame_id=None)), "header.frame_id must be a text"),
+        (POSE_OF_B, "publish takes one Marker; got Pose"),
+        ([marker(Marker.CUBE)], "publish takes one Marker; got list"),
+    ],
+    ids=lambda value: value if isinstance(value, str) else type(value).__name__,
+)
+def test_fields_of_another_kind_are_named(viewer, wrong, message):
+    with pytest.raises(TypeError, match=message):
+        viewer.publish(wrong)
+    viewer.figure()
+
+
+@pytest.mark.parametrize(
+    "wrong, message",
+    [
+        (marker(Marker.POINTS, [Point()] * 3, colors=[ColorRGBA()]), "as many as points, or none; got 1 colors, 3 points"),
+        (changed(color=ColorRGBA(255, 0, 0, 1)), r"marker n/7: color must be made of numbers from 0 to 1 \(not to 255\)"),
+        (changed(header=Header(0, 0, "")), "header.frame_id is empty. Known frames: a, b, c"),
+        (changed(header=Header(0, 0, "/a")), "Write it without the slash"),
         (marker(Marker.MESH_RESOURCE), "MESH_RESOURCE are not drawn yet; these are: ARROW, CUBE"),
         (marker(Marker.TRIANGLE_LIST, [Point()] * 4), "three points for each triangle; got 4"),
         (marker(Marker.CUBE_LIST, [Point()] * 2001), "at most 2000 points; got 2001. POINTS take any number"),
@@ -290,7 +326,7 @@ def test_boxes_are_where_their_pose_says(viewer):
     assert "box table in b: middle (0, 0, 1), 2 x 1 x 0.1 m" in viewer.description()
     viewer.add_box("table", (1, 1, 1), pose=PoseStamped(Header(0, 0, "c"), POSE_OF_B))
     assert "box table in c: middle (1, 2, 3)" in viewer.description()
-    with pytest.raises(ValueError, match="size must be three numbers above 0; got 1, 0, 1"):
+    with pytest.raises(ValueError, match="size must be three numbers of at least 1e-05 m; got 1, 0, 1"):
         viewer.add_box("table", (1, 0, 1))
 
 
@@ -305,7 +341,7 @@ def test_a_grippers_fingers_lie_along_x_and_move_along_y(viewer):
     assert "gripper on c: opening 0.2 m" in viewer.description()
     with pytest.raises(ValueError, match="'d' is not known"):
         viewer.add_gripper("d")
-    with pytest.raises(ValueError, match="opening must be a number of metres above 0; got 0"):
+    with pytest.raises(ValueError, match="opening must be a number of metres from 1e-05 to 1e\\+06; got 0"):
         viewer.add_gripper("c", opening=0)
 
 
@@ -387,6 +423,53 @@ def test_triangles(viewer):
     assert mesh.colors[0].tolist() == [[1, 0, 0, 1]] * 3
     image = np.array(Image.open(io.BytesIO(viewer.look(at=["a"]).picture())).convert("RGB")).astype(int)
     assert len(image)
+
+
+def test_what_coincides_but_for_rounding_is_drawn_as_what_coincides():
+    viewer = Viewer("a")
+    viewer.add_frame("b", tft.translation_matrix([1e-17, 0, 3e-16]))
+    assert drawing.draw_all([viewer])[1] == 1.0
+
+
+def test_each_point_and_triangle_has_its_own_opacity(viewer):
+    colors = [ColorRGBA(1, 0, 0, 1), ColorRGBA(0, 1, 0, 0), ColorRGBA(0, 0, 1, 0.25)]
+    viewer.publish(marker(Marker.POINTS, [Point(x, 0, 0) for x in range(3)], colors=colors))
+    looks = [look for look, _ in commands.properties(drawn(viewer).nodes).values() if look and look[0] == "points"]
+    assert len(looks) == 2  # what has opacity 0 is not drawn
+    materials = [umsgpack.unpackb(commands.set_object("p", look))["object"]["materials"][0] for look in looks]
+    assert sorted(material.get("opacity", 1) for material in materials) == [0.25, 1]
+    assert [m["transparent"] for m in materials if m.get("opacity", 1) < 1] == [True]
+
+
+def test_dollars_are_dollars(viewer):
+    viewer.add_frame(r"$\frac$", np.eye(4))
+    viewer.text = "$5 and $6"
+    viewer.figure()
+
+
+def test_a_text_is_cut_to_what_fits(viewer):
+    viewer.text = "x" * 1000 + "\n" + "y\n" * 1000
+    assert len(viewer.text) < 300
+    viewer.text = np.eye(2)
+    assert viewer.text == "[[1. 0.]\n [0. 1.]]"
+
+
+def test_many_frames_are_drawn_in_bearable_time():
+    viewer = Viewer("f0")
+    for i in range(1, 200):
+        viewer.add_frame(f"f{i}", tft.rotation_matrix(0.1, [0, 1, 1]) @ tft.translation_matrix([1, 0, 0]), f"f{i - 1}")
+    assert len(viewer.figure()) < 600_000
+
+
+def test_colours_of_the_picture_are_those_of_the_scene():
+    viewer = Viewer("a")
+    colors = [(0, 1, 1, 1), (1, 0, 1, 1), (1, 1, 0, 1), (0, 0, 0, 1)]
+    for i, color in enumerate(colors):
+        viewer.add_box(f"b{i}", (1, 1, 1), pose=tft.translation_matrix([2 * i, 0, 0]), color=color)
+    pixels = np.array(Image.open(io.BytesIO(viewer.picture())).convert("RGB")).reshape(-1, 3) / 255
+    hues = pixels / np.maximum(pixels.max(axis=1, keepdims=True), 1e-9)
+    for color in colors[:3]:
+        assert (np.abs(hues - color[:3]).max(axis=1) < 0.08).mean() > 0.003, color
 
 
 def test_a_text_is_as_high_as_its_scale_says(viewer):
@@ -590,4 +673,4 @@ def test_without_webgl_the_picture_remains(viewer, dom):
     with_webgl = dom(viewer.html(), *SOFTWARE_WEBGL)
     assert "<iframe" in with_webgl
     png = base64.b64decode(re.search(r'src="data:image/png;base64,([^"]+)"', elements)[1])
-    assert Image.open(io.BytesIO(png)).width > 800
+    assert Image.open(io.BytesIO(png)).width > 700

@@ -30,7 +30,7 @@ class Control:
 
     def as_json(self):
         """Return what the page needs to know, in words and numbers."""
-        values = [f"{value:g}" if self.kind == "slider" else str(value) for value in self.values]
+        values = [f"{value:.6g}" if isinstance(value, float) else str(value) for value in self.values]
         return {"name": self.name, "kind": self.kind, "values": values, "index": self.index, "sampled": self.sampled}
 
 
@@ -42,15 +42,15 @@ class Motion:
 
     @property
     def arguments(self):
-        """The arguments (a dict) of the present state: the end of an animation, or how the controls are set."""
+        """What belongs to the present state: the moment of an animation's end, or a dict of the controls' values."""
         if self.seconds is not None:
-            return {"moment": 1.0}
+            return 1.0
         return {control.name: control.values[control.index] for control in self.controls}
 
     def settings(self):
         """Return the arguments of the states that are computed beforehand; none if they would be too many."""
         if self.seconds is not None:
-            return [{"moment": moment} for moment in np.linspace(0, 1, STATES).tolist()]
+            return np.linspace(0, 1, STATES).tolist()
         _sample(self.controls)
         if math.prod(len(control.sampled) for control in self.controls) > MOST_STATES:
             return []
@@ -71,10 +71,18 @@ class Motion:
 
         An error of the function becomes the text, too, or is raised if `strict`.
         """
-        scene = base.copy()
+        scene, before = base.copy(), vars(base.copy())
+        args, kwargs = ((), arguments) if isinstance(arguments, dict) else ((arguments,), {})
         try:
-            if (result := self.function(scene, **arguments)) is not None:
+            inspect.signature(self.function).bind(scene, *args, **kwargs)
+        except TypeError as error:
+            needed = ", ".join(["scene", *(kwargs or ["moment"])])
+            raise TypeError(f"the function must take ({needed}): {error}") from None
+        try:
+            if (result := self.function(scene, *args, **kwargs)) is not None:
                 scene.text = as_text(result)
+            if vars(base.copy()) != before:
+                raise ValueError("the function must add to the scene it is given, and not to the viewer")
         except Exception as error:  # the student's own, raised while they drag
             if strict:
                 raise
@@ -111,13 +119,13 @@ def control(name, choices, default=inspect.Parameter.empty):
         return Control(name, "choice", choices, found[0] if given else 0)
     numeric = isinstance(choices, tuple) and all(isinstance(n, numbers.Real) and math.isfinite(n) for n in choices)
     if not numeric or len(choices) not in (2, 3) or not choices[0] < choices[1]:
-        raise ValueError(f"{name}={choices!r}: use (min, max) or (min, max, step) for a slider, a list for a choice")
+        raise ValueError(f"{name}={choices!r}: use (min, max) or (min, max, step) for a slider, a list for a choice; what else has several values, make a list")
     low, high, *step = (n.item() if isinstance(n, np.generic) else n for n in choices)
     step = step[0] if step else 1 if isinstance(low, int) and isinstance(high, int) else (high - low) / 100
     if not 0 < step <= high - low or (high - low) / step >= MOST_VALUES:
         raise ValueError(f"{name}={choices!r}: the step must lead from min to max in at most {MOST_VALUES - 1} steps")
     whole = isinstance(low, int) and isinstance(step, int)
-    values = [low + i * step if whole else round(low + i * step, 10) for i in range(int((high - low) / step + 1e-9) + 1)]
+    values = [low + i * step if whole else float(f"{low + i * step:.12g}") for i in range(int((high - low) / step + 1e-9) + 1)]
     if given and not (isinstance(default, numbers.Real) and low <= default <= high):
         raise ValueError(f"{name}={choices!r}: the default {default!r} is not between min and max")
     start = default if given else values[len(values) // 2]

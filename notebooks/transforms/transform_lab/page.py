@@ -24,6 +24,7 @@ from .shapes import BESIDE
 from .shapes import path as node_path
 
 ASPECT = 1.6  # width by height of what is drawn
+MOST_CHOICES = 40  # of fixed frames to choose from
 ROW = 30  # height of a row of controls, in pixels
 HERE = Path(__file__).parent
 
@@ -64,7 +65,7 @@ def render(drawing, fixed_frame, seen_from, motion=None, states=(), live=None):
     """
     drawings = [drawing, *states]
     commands, frames = [], []
-    there = [name for name in drawing.frames if all(name in d.frames for d in drawings)]
+    there = [name for name in drawing.frames if all(name in d.frames for d in drawings)][:MOST_CHOICES]
     for i, name in enumerate(there):
         seen = np.concatenate([d.seen_from(name) for d in drawings])
         commands.append(set_object(f"grid{i}", ("lines", grid(seen)[0].tobytes())))

@@ -8,7 +8,7 @@ import numpy as np
 from .shapes import BESIDE
 
 HEIGHT = 4.5  # inches
-DOTS_PER_INCH = 130
+DOTS_PER_INCH = 110
 LIGHT = np.array([0.3, 0.2, 0.95])  # in the camera's right, up and backward directions
 
 
@@ -44,7 +44,7 @@ def render(nodes, grid, camera, text=""):
     axes.add_collection(PolyCollection(polygons, facecolors=colors, edgecolors=edges, linewidths=0.3, zorder=1))
     _write(axes, nodes, camera)
     if text:
-        axes.text(0.02, 0.98, text, family="monospace", fontsize=9, va="top", color="#222222", zorder=4,
+        axes.text(0.02, 0.98, text, parse_math=False, family="monospace", fontsize=9, va="top", color="#222222", zorder=4,
                   bbox={"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 2})  # fmt: skip
 
     canvas.draw()
@@ -56,7 +56,7 @@ def _png(pixels):
     from PIL import Image
 
     file = io.BytesIO()
-    Image.fromarray(pixels).convert("RGB").quantize(96).save(file, "PNG", optimize=True)
+    Image.fromarray(pixels).convert("RGB").quantize(96, method=Image.Quantize.MAXCOVERAGE).save(file, "PNG", optimize=True)
     return file.getvalue()
 
 
@@ -76,16 +76,18 @@ def _write(axes, nodes, camera):
         half_width, half_height = 0.011 * len(label.text), line / 2
         candidates = [place + [right * half_width, up * line] for right, up in BESIDE] if label.beside else [place]
 
+        marks = np.array(taken)
+        w, h, badness = marks[:, 2:].T
+
         def badness_at(candidate):
-            x, y = np.abs(np.array([mark[:2] for mark in taken]) - candidate).T
-            w, h, badness = np.array([mark[2:] for mark in taken]).T
+            x, y = np.abs(marks[:, :2] - candidate).T
             edge = np.minimum(candidate, [camera.aspect, 1] - candidate)
             cut_off = np.any(edge < [half_width, half_height])
             return badness[(x < half_width + w) & (y < half_height + h)].sum() + 20 * cut_off
 
         x, y = min(candidates, key=badness_at)
         taken.append((x, y, half_width, half_height, 20 if label.beside else 5))
-        axes.text(x, y, label.text, color=label.color[:3], fontsize=_font_size(label, transform, camera),
+        axes.text(x, y, label.text, parse_math=False, color=label.color[:3], fontsize=_font_size(label, transform, camera),
                   fontweight="bold", ha="center", va="center", path_effects=[withStroke(linewidth=3, foreground="white")])  # fmt: skip
 
 
@@ -100,7 +102,8 @@ def _font_size(label, transform, camera):
     if label.height is None:
         return 10
     depth = camera.project(transform[:3, :3] @ label.position + transform[:3, 3])[1]
-    return 72 * HEIGHT * label.height / (2 * camera.tangent * depth) / 0.72  # a capital is 0.72 of its font's size
+    # a capital is 0.72 of its font's size; above 400 points the picture would be all letter
+    return min(72 * HEIGHT * label.height / (2 * camera.tangent * depth) / 0.72, 400)
 
 
 def _solid(node, solid, camera):

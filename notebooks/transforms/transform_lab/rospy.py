@@ -22,7 +22,9 @@ class _Node:
         self.name, self.viewer, self.shown, self.watching = "rviz", None, True, False
 
     def publish(self, marker):
-        viewer = self.viewer or Viewer(marker.header.frame_id or "map")
+        if self.viewer is None and getattr(marker, "action", Marker.ADD) != Marker.ADD:
+            return  # there is nothing to delete
+        viewer = self.viewer or Viewer(_frame_of(marker))
         viewer.publish(marker)
         self.viewer, self.shown = viewer, False
         self.watch()
@@ -58,6 +60,19 @@ class _Node:
 _node = _Node()
 
 
+def _frame_of(marker):
+    """Return the frame that a marker, the first one, is given in: it becomes the fixed frame."""
+    if not hasattr(marker, "header"):
+        raise TypeError(f"publish takes one Marker; got {type(marker).__name__}")
+    if not marker.header.frame_id:
+        raise ValueError("header.frame_id is empty: set it to the name of the frame that the marker is given in")
+    return marker.header.frame_id
+
+
+def __getattr__(name):
+    raise AttributeError(f"rospy.{name} is not here. There is what the lab's script uses: {', '.join(__all__)}")
+
+
 def _shell():
     """Return IPython's shell where there is one; a plain script has none."""
     if "IPython" not in sys.modules:
@@ -81,7 +96,7 @@ class Publisher:
 
     def __init__(self, name, data_class, **options):
         if data_class is not Marker:
-            raise TypeError(f"Publisher: only Marker messages can be seen here; got {data_class.__name__}")
+            raise TypeError(f"Publisher: only Marker messages can be seen here; got {getattr(data_class, '__name__', data_class)}")
 
     def publish(self, marker):
         """Draw a Marker as RViz does. The first one's header.frame_id becomes the fixed frame.

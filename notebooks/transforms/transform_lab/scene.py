@@ -2,13 +2,14 @@
 
 import copy
 from dataclasses import dataclass
+from numbers import Integral
 
 import numpy as np
 
 from . import tft
 from .messages import Marker
 from .shapes import BROWN, ORANGE, PURPLE, STEEL, Node, draw_marker, marker_type, rgba, xyz
-from .validation import FARTHEST, numbers, rigid_transform, row_text, within_reach
+from .validation import FARTHEST, NEAREST, numbers, rigid_transform, row_text, within_reach
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,6 +80,10 @@ class Scene:
             setattr(other, name, copy.copy(getattr(self, name)) if isinstance(value, dict) else getattr(self, name))
         return other
 
+    def state(self):
+        """Return the scene that is shown: this one."""
+        return self
+
     @property
     def fixed_frame(self):
         """The frame in which the scene is drawn and looked at; any known frame can be made the fixed one."""
@@ -86,17 +91,17 @@ class Scene:
 
     @fixed_frame.setter
     def fixed_frame(self, name):
-        self._fixed_frame = self._known(name, "fixed_frame: the frame")
+        self._fixed_frame = self.state()._known(name, "fixed_frame: the frame")
         self._changed()
 
     @property
     def text(self):
-        """What is shown in the upper left corner."""
+        """What is shown in the upper left corner, at most 40 lines."""
         return self._text
 
     @text.setter
     def text(self, text):
-        self._text = str(text)
+        self._text = "\n".join(line[:120] for line in str(text).expandtabs().splitlines()[:40])
         self._changed()
 
     # Filling the scene
@@ -121,7 +126,7 @@ class Scene:
                 raise ValueError(f"{what}: {parent!r} is itself described in {name!r}; that is a circle")
             ancestor = self.frames[ancestor].parent
         length = None if length is None else _size(length, f"{what}: length")
-        self.frames[name] = Frame(parent, matrix, length, ghost)
+        self.frames[name] = Frame(parent, matrix, length, bool(ghost))
         self._changed()
 
     def add_point(self, name, position, frame=None, color=ORANGE, ghost=False):
@@ -132,7 +137,7 @@ class Scene:
         """
         frame = self._known(frame, f"add_point({_name(name, 'add_point: the name')!r}): the frame")
         position = _position(position, f"add_point({name!r}): the position")
-        self.points[name] = Point(frame, position, rgba(color), ghost)
+        self.points[name] = Point(frame, position, rgba(color, f"add_point({name!r}): the color"), bool(ghost))
         self._changed()
 
     def add_arrow(self, name, tip, tail=(0, 0, 0), frame=None, color=PURPLE, ghost=False):
@@ -142,7 +147,7 @@ class Scene:
         """
         frame = self._known(frame, f"add_arrow({_name(name, 'add_arrow: the name')!r}): the frame")
         tail, tip = (_position(p, f"add_arrow({name!r}): the {end}") for p, end in ((tail, "tail"), (tip, "tip")))
-        self.arrows[name] = Arrow(frame, tail, tip, rgba(color), ghost)
+        self.arrows[name] = Arrow(frame, tail, tip, rgba(color, f"add_arrow({name!r}): the color"), bool(ghost))
         self._changed()
 
     def add_box(self, name, size, pose=None, frame=None, color=BROWN, ghost=False):
@@ -154,9 +159,9 @@ class Scene:
         what = f"add_box({_name(name, 'add_box: the name')!r})"
         frame, matrix = self._placed(frame, np.eye(4) if pose is None else pose, what, "frame")
         size = within_reach(numbers(size, f"{what}: the size", lengths=(3,)), f"{what}: the size")
-        if not (size > 0).all():
-            raise ValueError(f"{what}: the size must be three numbers above 0; got {row_text(size)}")
-        self.boxes[name] = Box(frame, matrix, size, rgba(color), ghost)
+        if not (size >= NEAREST).all():
+            raise ValueError(f"{what}: the size must be three numbers of at least {NEAREST:g} m; got {row_text(size)}")
+        self.boxes[name] = Box(frame, matrix, size, rgba(color, f"{what}: the color"), bool(ghost))
         self._changed()
 
     def add_gripper(self, frame, opening=0.08, color=STEEL, ghost=False):
@@ -167,7 +172,7 @@ class Scene:
         """
         frame = self._known(frame, f"add_gripper({frame!r}): the frame")
         opening = _size(opening, f"add_gripper({frame!r}): opening")
-        self.grippers[frame] = Gripper(frame, opening, rgba(color), ghost)
+        self.grippers[frame] = Gripper(frame, opening, rgba(color, f"add_gripper({frame!r}): the color"), bool(ghost))
         self._changed()
 
     def publish(self, marker):
@@ -179,6 +184,7 @@ class Scene:
 
         Raises ValueError if header.frame_id is not known, for a size of 0, and for a type that is not drawn.
         """
+        _check_fields(marker)
         key = (marker.ns, marker.id)
         if marker.action == Marker.DELETEALL:
             self.markers.clear()
@@ -186,7 +192,10 @@ class Scene:
             self.markers.pop(key, None)
         elif marker.action == Marker.ADD:
             self._known(marker.header.frame_id, f"marker {marker_name(marker)}: header.frame_id")
-            draw_marker(marker, Node("", marker_pose(marker)))  # raises now, not when the scene is shown
+            try:  # raises now, not when the scene is shown
+                draw_marker(marker, Node("", marker_pose(marker)))
+            except (TypeError, ValueError) as error:
+                raise type(error)(f"marker {marker_name(marker)}: {error}") from None
             self.markers[key] = copy.deepcopy(marker)
         else:
             raise ValueError(f"marker {marker_name(marker)}: action must be ADD, DELETE or DELETEALL")
@@ -199,14 +208,18 @@ class Scene:
 
         Raises ValueError for a frame that is not known, naming those that are.
         """
-        target = self.in_root(self._known(target_frame, "lookup: the target frame"))
-        source = self.in_root(self._known(source_frame, "lookup: the source frame"))
+        scene = self.state()
+        target = scene.in_root(scene._known(target_frame, "lookup: the target frame"))
+        source = scene.in_root(scene._known(source_frame, "lookup: the source frame"))
         return tft.inverse_matrix(target) @ source
 
     def in_root(self, name):
         """Return the 4x4 transform of a known frame in the root frame."""
-        frame = self.frames[name]
-        return np.eye(4) if frame.parent is None else self.in_root(frame.parent) @ frame.transform
+        root_T_frame = np.eye(4)
+        while name != self.root:
+            root_T_frame = self.frames[name].transform @ root_T_frame
+            name = self.frames[name].parent
+        return root_T_frame
 
     def description(self):
         """Return the scene in words: each frame with its parent, position and axes, then all the rest."""
@@ -239,9 +252,13 @@ class Scene:
         """Return `name` (the root for None) if it is a frame of the scene; else raise ValueError with `what`."""
         if name is None:
             return self.root
-        if name in self.frames:
+        if name == "":
+            raise ValueError(f"{what} is empty. Known frames: {', '.join(self.frames)}")
+        if _name(name, what) in self.frames:
             return name
-        raise ValueError(f"{what} {name!r} is not known. Known frames: {', '.join(self.frames)}")
+        advice = " Write it without the slash." if name.lstrip("/") in self.frames else ""
+        known = ", ".join([*self.frames][:30]) + (", …" if len(self.frames) > 30 else "")
+        raise ValueError(f"{what} {name!r} is not known.{advice} Known frames: {known}")
 
     def _placed(self, frame, pose, what, kind):
         """Return the known frame in which `pose` (4x4, Pose, PoseStamped) is given, and the 4x4 matrix."""
@@ -261,24 +278,27 @@ class Scene:
 def _name(name, what):
     """Return a name, which must be a text that is not empty."""
     if not isinstance(name, str) or not name:
-        raise TypeError(f"{what} must be a text, such as 'base_link'; got {name!r}")
+        got = repr(name) if name is None or isinstance(name, (str, int, float)) else type(name).__name__
+        raise TypeError(f"{what} must be a text, such as 'base_link'; got {got}")
+    if len(name) > 100 or not name.isprintable():
+        raise ValueError(f"{what} must be at most 100 letters that can be printed; got {name[:100]!r}")
     return name
 
 
 def _size(value, what):
-    """Return a length in metres, a number above 0."""
+    """Return a length in metres, a number that can be drawn."""
     size = numbers(value, what)
-    if size.shape != () or not 0 < size <= FARTHEST:
-        raise ValueError(f"{what} must be a number of metres above 0; got {value!r}")
+    if size.shape != () or not NEAREST <= size <= FARTHEST:
+        raise ValueError(f"{what} must be a number of metres from {NEAREST:g} to {FARTHEST:g}; got {value!r}")
     return float(size)
 
 
 def _position(value, what):
     """Return the three coordinates of a Point, of 3 numbers, or of 4 homogeneous ones."""
     if hasattr(value, "x"):
-        return xyz(value)
+        return xyz(value, what)
     coordinates = numbers(value, what, lengths=(3, 4))
-    if len(coordinates) == 4 and coordinates[3] != 1:
+    if len(coordinates) == 4 and abs(coordinates[3] - 1) > 1e-9:
         raise ValueError(f"{what} has four numbers, so the last must be 1; it is {coordinates[3]:g}")
     return within_reach(coordinates[:3], what)
 
@@ -305,9 +325,35 @@ def marker_pose(marker):
     if any(getattr(q, name, 1) for name in "xyzw"):
         matrix = _pose_matrix(marker.pose, what)
     else:
-        matrix = tft.translation_matrix(xyz(marker.pose.position))
+        matrix = tft.translation_matrix(xyz(marker.pose.position, f"{what}'s position"))
     within_reach(matrix[:3, 3], f"{what}'s position")
     return matrix
+
+
+def _check_fields(marker):
+    """Raise TypeError for what is no Marker, or one of whose fields holds something of another kind."""
+    wanted = {"header": (["frame_id"], "a Header"), "pose": (["position", "orientation"], "a Pose"),
+              "scale": ("xyz", "a Vector3"), "color": ("rgba", "a ColorRGBA")}  # fmt: skip
+    if not all(hasattr(marker, name) for name in (*wanted, "ns", "id", "type", "action", "points", "colors", "text")):
+        raise TypeError(f"publish takes one Marker; got {type(marker).__name__}")
+    for field, (names, kind) in wanted.items():
+        value = getattr(marker, field)
+        if not all(hasattr(value, name) for name in names):
+            raise TypeError(f"marker {marker_name(marker)}: {field} must be {kind}; got {type(value).__name__}")
+    for field, names, kind in (("points", "xyz", "Point"), ("colors", "rgba", "ColorRGBA")):
+        values = getattr(marker, field)
+        if not isinstance(values, (list, tuple)):
+            kind_found = type(values).__name__
+            raise TypeError(f"marker {marker_name(marker)}: {field} must be a list of {kind}s; got {kind_found}")
+        for i, value in enumerate(values):
+            if not all(hasattr(value, name) for name in names):
+                found = type(value).__name__
+                raise TypeError(f"marker {marker_name(marker)}: {field}[{i}] must be a {kind}; got {found}")
+    if not isinstance(marker.header.frame_id, str):
+        found = type(marker.header.frame_id).__name__
+        raise TypeError(f"marker {marker_name(marker)}: header.frame_id must be a text; got {found}")
+    if not isinstance(marker.text, str) or not all(isinstance(n, Integral) for n in (marker.id, marker.type, marker.action)):
+        raise TypeError(f"marker {marker_name(marker)}: text must be a text, and id, type and action whole numbers")
 
 
 def marker_name(marker):
@@ -321,7 +367,7 @@ def _describe_marker(marker):
     text = f"marker {marker_name(marker)} in {marker.header.frame_id}: {marker_type(marker)} at"
     text += f" ({row_text(pose[:3, 3])}), x axis ({row_text(pose[:3, 0])}), y axis ({row_text(pose[:3, 1])})"
     if marker.type in (Marker.ARROW, Marker.LINE_LIST, Marker.LINE_STRIP) and 0 < len(marker.points) <= 6:
-        text += ", points " + " ".join(f"({row_text(xyz(p))})" for p in marker.points)
+        text += ", points " + " ".join(f"({row_text(xyz(p, 'point'))})" for p in marker.points)
     elif marker.points:
         text += f", {len(marker.points)} points"
     if marker.text:

@@ -4,6 +4,7 @@ import numpy as np
 
 # How far a rotation's entries may be off: 0.707 for cos 45 degrees passes, as it does in ROS.
 TOLERANCE = 1e-3
+NEAREST = 1e-5  # metres; smaller things cannot be seen
 FARTHEST = 1e6  # metres; farther away, a graphics card's 32-bit numbers no longer tell decimetres apart
 
 
@@ -21,10 +22,14 @@ def numbers(value, what, lengths=None):
             )
     if value is None:
         raise TypeError(f"{what} must be made of numbers; got None. Does your function return its result?")
+    if np.ma.is_masked(value) or np.iscomplexobj(value):
+        raise TypeError(f"{what} must be made of real numbers, none of them masked; got {value!r}")
     try:
         array = np.array(value, dtype=np.float64)
     except TypeError:
         raise TypeError(f"{what} must be made of numbers; got {type(value).__name__}") from None
+    except OverflowError:
+        raise ValueError(f"{what} has a number that is too large") from None
     except ValueError:
         raise ValueError(f"{what} must be made of numbers, in rows of equal length; got {value!r}") from None
     if lengths is not None:
@@ -77,7 +82,8 @@ def rigid_transform(matrix, what):
 def within_reach(position, what):
     """Return `position` (an array, in metres) if it can be drawn; raise ValueError for what is too far away."""
     if np.abs(position).max(initial=0) > FARTHEST:
-        raise ValueError(f"{what} is too far away to be drawn: ({row_text(position)}). Are these metres?")
+        farthest = position.flat[np.abs(position).argmax()]
+        raise ValueError(f"{what} is too far away to be drawn: {farthest:.4g} m. Are these metres?")
     return position
 
 

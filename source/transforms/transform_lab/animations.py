@@ -23,6 +23,7 @@ def animate_rotation(rotation, names=("frame_a", "frame_b")):
 
     Raises ValueError for what is no rotation. Source: Euler's rotation theorem.
     """
+    _two(names, "animate_rotation")
     x, y, z, w = _quaternion(rotation)
     sine = math.hypot(x, y, z)
     angle = 2 * math.atan2(sine, w)
@@ -48,6 +49,8 @@ def animate_chain(*transforms, names="ABCDEFGHIJKLMNOPQRSTUVWXYZ"):
 
     Raises ValueError for no transform, too few names, and for what is no rigid transform.
     """
+    if len(transforms) == 1 and np.ndim(transforms[0]) == 3:
+        raise ValueError("animate_chain takes transforms one by one: write animate_chain(*transforms)")
     links = [rigid_transform(T, f"animate_chain: transform {i}") for i, T in enumerate(transforms, 1)]
     if not links or len(names) <= len(links):
         raise ValueError(f"animate_chain takes one transform or more and one name more; got {len(links)}, {len(names)}")
@@ -75,7 +78,7 @@ def animate_inverse(a_T_b, names=("A", "B")):
 
     Raises ValueError for what is no rigid transform.
     """
-    a, b = names
+    a, b = _two(names, "animate_inverse")
     a_T_b = rigid_transform(a_T_b, "animate_inverse: the transform")
     b_T_a = tft.inverse_matrix(a_T_b)
     viewer = Viewer("fixed frame", ghost=True)
@@ -137,6 +140,12 @@ def between(start, end, part):
     matrix = tft.quaternion_matrix(tft.quaternion_slerp(*turns, part))
     matrix[:3, 3] = (1 - part) * start[:3, 3] + part * end[:3, 3]
     return matrix
+
+
+def _two(names, what):
+    if len(names) != 2:
+        raise ValueError(f"{what}: names must be those of two frames; got {names!r}")
+    return names
 
 
 def _quaternion(rotation):

@@ -57,17 +57,18 @@ def set_object(path, look):
     """Return the command that puts an object of a certain look at `path`."""
     from meshcat import geometry as g
 
-    kind, *rest = look
+    (kind, *rest), opacity = look, 1.0
     if kind == "points":
         points, colors = (np.frombuffer(data).reshape(-1, n).T.astype(np.float32) for data, n in zip(rest, (3, 4)))
         # three.js takes the size for that of a point seen with a field of view of 90 degrees
         element = g.PointCloud(points, colors[:3], size=rest[2] / math.tan(FIELD_OF_VIEW / 2))
+        opacity = float(colors[3, 0])
     elif kind == "triangles":
         corners, colors = (np.frombuffer(data).reshape(-1, n) for data, n in zip(rest, (3, 4)))
         faces = np.arange(len(corners), dtype=np.uint32).reshape(-1, 3)
         shape = g.TriangularMeshGeometry(corners.astype(np.float32), faces, colors[:, :3].astype(np.float32))
-        material = g.MeshLambertMaterial(color=0xFFFFFF, opacity=float(colors[0, 3]), vertexColors=True, side=2)
-        element = g.Mesh(shape, material)
+        element = g.Mesh(shape, g.MeshLambertMaterial(color=0xFFFFFF, vertexColors=True, side=2))
+        opacity = float(colors[:3, 3].mean())
     elif kind == "lines":
         lines = np.frombuffer(rest[0]).reshape(-1, 3).T.astype(np.float32)
         element = g.LineSegments(g.PointsGeometry(lines), g.LineBasicMaterial(GRID_COLOR, depthWrite=False))
@@ -80,10 +81,13 @@ def set_object(path, look):
         }[kind]
         r, g_, b, opacity = rest[0]
         color = sum(round(255 * value) << shift for value, shift in ((r, 16), (g_, 8), (b, 0)))
-        element = g.Mesh(solid, g.MeshLambertMaterial(color=color, opacity=opacity))
+        element = g.Mesh(solid, g.MeshLambertMaterial(color=color, side=0))  # seen from outside
     # meshcat draws identifiers at random; fixed ones make the same page of the same scene, and a smaller one
     element.uuid, element.geometry.uuid, element.material.uuid = "object", "geometry", "material"
-    return pack({"type": "set_object", "path": path, "object": element.lower()})
+    lowered = element.lower()
+    if opacity < 1:  # without depthWrite, what is behind or inside is seen through it
+        lowered["materials"][0].update(opacity=opacity, transparent=True, depthWrite=False)
+    return pack({"type": "set_object", "path": path, "object": lowered})
 
 
 def set_property(path, name, value):

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from . import tft
-from .scene import marker_pose
+from .scene import marker_name, marker_pose
 from .shapes import (
     GREY,
     Label,
@@ -20,6 +20,9 @@ from .shapes import (
     rod,
     translucent,
 )
+
+
+SMALLEST = 1e-6  # metres; what is closer together is at the same place but for rounding
 
 
 @dataclass
@@ -64,7 +67,7 @@ def draw_all(scenes, at=None):
         raise ValueError(f"none of what is to be looked at is there: {', '.join(at)}")
     given = [frame.length for scene in scenes for frame in scene.frames.values() if frame.length]
     size = np.ptp(np.concatenate([drawing.seen for drawing in drawings]), axis=0).max()
-    length = max(given) if given else round_number(0.5 * size) if size > 0 else 1.0
+    length = max(given) if given else round_number(0.5 * size) if size > SMALLEST else 1.0
     for scene, drawing in zip(scenes, drawings):
         _add_sized(scene, drawing, length, at)
     return drawings, length
@@ -74,8 +77,8 @@ def _draw(scene, at):
     """Return a Drawing with what has a size of its own: markers, boxes and grippers."""
     where = {name: scene.in_root(name) for name in scene.frames}
     nodes = []
-    for i, marker in enumerate(scene.markers.values()):
-        node = Node(f"markers/{i}", where[marker.header.frame_id] @ marker_pose(marker))
+    for marker in scene.markers.values():
+        node = Node(path("markers", marker_name(marker)), where[marker.header.frame_id] @ marker_pose(marker))
         if marker.color.a > 0 or marker.colors:
             draw_marker(marker, node)
         nodes.append(node)

@@ -125,7 +125,7 @@ def _arrow(ax, tail, along, color, opacity=1, name=""):
     style = {"arrowstyle": "-|>", "color": color[:3], "alpha": opacity, "linewidth": 2.5, "mutation_scale": 14}
     ax.annotate("", tail + along, tail, arrowprops={**style, "shrinkA": 0, "shrinkB": 0})
     if name:
-        ax.text(*(tail + 1.17 * along), name, color=color[:3], alpha=max(opacity, 0.6), ha="center", va="center")
+        ax.text(*(tail + 1.17 * along), name, parse_math=False, color=color[:3], alpha=max(opacity, 0.6), ha="center", va="center")
 
 
 def _outline(ax, matrix, color):
@@ -138,5 +138,5 @@ def _outline(ax, matrix, color):
 
 
 def _name(ax, name, place):
-    style = {"color": DARK, "fontweight": "bold", "annotation_clip": True}
+    style = {"color": DARK, "fontweight": "bold", "annotation_clip": True, "parse_math": False}
     ax.annotate(name, place, xytext=(5, -12), textcoords="offset points", **style)

@@ -152,10 +152,11 @@ def gripper_node(gripper, transform):
     return node
 
 
-def xyz(message):
-    """Return the x, y, z of a Point or Vector3 as an array."""
-    kind = type(message).__name__
-    return within_reach(numbers([message.x, message.y, message.z], kind, lengths=(3,)), kind)
+def xyz(message, what):
+    """Return the x, y, z of a Point or Vector3 as an array; `what` starts the error messages."""
+    if hasattr(message, "w") or not all(hasattr(message, name) for name in "xyz"):
+        raise TypeError(f"{what} must be a Point, such as Point(1, 2, 3); got {type(message).__name__}")
+    return within_reach(numbers([message.x, message.y, message.z], what, lengths=(3,)), what)
 
 
 def translucent(color):
@@ -163,13 +164,15 @@ def translucent(color):
     return (*color[:3], 0.3 * color[3])
 
 
-def rgba(color):
+def rgba(color, what):
     """Return a colour (ColorRGBA, or 3 or 4 numbers from 0 to 1) as a tuple r, g, b, opacity."""
+    if isinstance(color, str):
+        raise TypeError(f"{what} must be numbers from 0 to 1, such as (1, 0, 0) for red; got {color!r}")
     if hasattr(color, "r"):
         color = [color.r, color.g, color.b, color.a]
-    values = numbers(color, "a color", lengths=(3, 4))
+    values = numbers(color, what, lengths=(3, 4))
     if values.min() < 0 or values.max() > 1:
-        raise ValueError(f"a color is made of numbers from 0 to 1; got {values.tolist()}")
+        raise ValueError(f"{what} must be made of numbers from 0 to 1 (not to 255); got {values.tolist()}")
     return (*values.tolist(), 1.0)[:4]
 
 
@@ -178,11 +181,15 @@ def draw_marker(marker, node):
 
     Raises ValueError for a size of 0, an odd number of points in a LINE_LIST, and for types that are not drawn.
     """
-    color, size, kind = rgba(marker.color), xyz(marker.scale), marker.type
+    color, size, kind = rgba(marker.color, "color"), xyz(marker.scale, "scale"), marker.type
     if len(marker.points) > MOST and kind != Marker.POINTS:
         raise ValueError(f"a marker draws at most {MOST} points; got {len(marker.points)}. POINTS take any number")
-    points = [xyz(point) for point in marker.points]
-    colors = [rgba(c) for c in marker.colors] if len(marker.colors) == len(points) > 0 else [color] * len(points)
+    points = [xyz(point, f"points[{i}]") for i, point in enumerate(marker.points)]
+    given = [rgba(c, f"colors[{i}]") for i, c in enumerate(marker.colors)]
+    triangles = kind == Marker.TRIANGLE_LIST and 3 * len(given) == len(points)  # one colour for each
+    if given and len(given) != len(points) and not triangles:
+        raise ValueError(f"colors must be as many as points, or none; got {len(given)} colors, {len(points)} points")
+    colors = [c for c in given for _ in range(3)] if triangles else given or [color] * len(points)
     if kind == Marker.ARROW and points:
         if len(points) != 2:
             raise ValueError(f"an ARROW takes two points (tail and tip) or none; got {len(points)}")
@@ -207,8 +214,8 @@ def draw_marker(marker, node):
             node.solids += rod(start, end, size[0], c)
     elif kind == Marker.POINTS:
         _need_size(size[:1], "scale.x (point width)")
-        if points:
-            node.clouds.append(Cloud(np.array(points), np.array(colors), size[0]))
+        for some in _of_one_opacity(np.reshape(colors, (-1, 4))):
+            node.clouds.append(Cloud(np.array(points)[some], np.array(colors)[some], size[0]))
     elif kind == Marker.TEXT_VIEW_FACING:
         _need_size(size[2:], "scale.z (height of a capital letter)")
         node.labels.append(Label(marker.text, np.zeros(3), color, height=size[2]))
@@ -216,13 +223,18 @@ def draw_marker(marker, node):
         _need_size(size, "scale.x, scale.y and scale.z")
         if len(points) % 3:
             raise ValueError(f"a TRIANGLE_LIST takes three points for each triangle; got {len(points)} points")
-        if len(marker.colors) * 3 == len(points):  # one colour for each triangle
-            colors = [rgba(c) for c in marker.colors for _ in range(3)]
-        if points:
-            corners = within_reach(np.reshape(points, (-1, 3, 3)) * size, "a triangle's corner")
-            node.meshes.append(Mesh(corners, np.reshape(colors, (-1, 3, 4))))
+        corners = within_reach(np.reshape(points, (-1, 3, 3)) * size, "a triangle's corner")
+        for some in _of_one_opacity(np.reshape(colors, (-1, 3, 4))):
+            node.meshes.append(Mesh(corners[some], np.reshape(colors, (-1, 3, 4))[some]))
     else:
         raise ValueError(f"markers of type {marker_type(marker)} are not drawn yet; these are: {', '.join(DRAWN)}")
+
+
+def _of_one_opacity(colors):
+    """Yield, for each opacity above 0 in `colors` (Nx4 or Nx3x4), which of the N have it."""
+    opacities = colors[..., 3].reshape(len(colors), -1).mean(axis=1)
+    for opacity in np.unique(opacities[opacities > 0]):
+        yield opacities == opacity
 
 
 MOST = 2000  # of what is drawn as solids; more would take a browser seconds

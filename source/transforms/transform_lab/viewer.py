@@ -47,10 +47,10 @@ class Viewer(Scene):
         view; by default everything has to be.
         """
         seen_from = seen_from or self._seen_from
-        if seen_from not in VIEWS:
+        if not isinstance(seen_from, str) or seen_from not in VIEWS:
             raise ValueError(f"seen_from must be one of {', '.join(VIEWS)}; got {seen_from!r}")
-        at = [at] if isinstance(at, str) else at
-        if at:
+        at = [at] if isinstance(at, str) else list(at or ())
+        if at:  # else there is no need to ask what is shown
             scene = self.state()
             known = [*scene.frames, *scene.points, *scene.arrows, *scene.boxes]
             for name in at:
@@ -68,7 +68,7 @@ class Viewer(Scene):
         """
         if not isinstance(seconds, numbers.Real) or not 0 < seconds < 3600:
             raise ValueError(f"animate: seconds must be a number above 0; got {seconds!r}")
-        return self._move(Motion(lambda scene, moment: function(scene, moment), seconds=float(seconds)))
+        return self._move(Motion(function, seconds=float(seconds)))
 
     def interact(self, function, **controls):
         """Give the scene sliders and drop-down lists, one for each further argument of `function`. Returns the viewer.
@@ -100,6 +100,8 @@ class Viewer(Scene):
 
     def _move(self, motion):
         """Keep `motion`; an error that its function raises at the start is the caller's."""
+        if not callable(motion.function):
+            raise TypeError(f"the first argument must be a function; got {type(motion.function).__name__}")
         motion.scene(self, motion.arguments, strict=True)
         self._motion, self._link = motion, None
         return self
@@ -192,9 +194,10 @@ class Viewer(Scene):
         from . import page, picture
         from .drawing import grid, in_frame
 
-        seen = drawing.seen_from(self.fixed_frame)
+        fixed = self.fixed_frame if self.fixed_frame in drawing.frames else self.root
+        seen = drawing.seen_from(fixed)
         camera = Camera(seen, page.ASPECT, self._seen_from, top)
-        nodes = in_frame(drawing.nodes, drawing.frames[self.fixed_frame])
+        nodes = in_frame(drawing.nodes, drawing.frames[fixed])
         return picture.render(nodes, grid(seen)[0], camera, drawing.text)
 
     def _caption(self, scene, drawing, length):
