@@ -444,7 +444,7 @@ def test_each_point_and_triangle_has_its_own_opacity(viewer):
 def test_dollars_are_dollars(viewer):
     viewer.add_frame(r"$\frac$", np.eye(4))
     viewer.figure()
-    viewer.text = r"from $\frac$ to $6"
+    viewer.text = r"from $\frac$ to here"
     viewer.figure()
 
 
