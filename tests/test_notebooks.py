@@ -1,5 +1,7 @@
 """The notebooks themselves: solved they earn everything, untouched they run calmly to the end and earn nothing."""
 
+import time
+
 import nbformat
 import pytest
 from conftest import ROOT
@@ -100,3 +102,10 @@ def test_headings_are_in_order(path):
             levels += [len(line) - len(line.lstrip("#")) for line in cell.source.splitlines() if line.startswith("#")]
     assert levels[0] == 1 and levels.count(1) == 1
     assert all(after - before <= 1 for before, after in zip(levels, levels[1:]))
+
+
+def test_a_page_can_be_made_in_the_sandbox_when_a_cell_asks_for_it(sandboxed):
+    against = assignment(Course(ROOT), seed=1)
+    with against.sandbox(Submission("", {})) as sandbox, sandbox.notebook(time.monotonic() + 60) as process:
+        run = process.run_cell("from transform_lab import Viewer\nlen(Viewer().html()) > 100_000")
+        assert [output["data"]["text/plain"] for output in run.outputs] == ["True"]

@@ -76,7 +76,7 @@ def command(package, megabytes=50):
             arguments += _bind(folder, folder, made)
     for name in WORKER_FILES:
         arguments += _bind(HERE / name, WORKER / name, made)
-    for path in sorted(package.glob("*.py")):
+    for path in package_files(package):
         arguments += _bind(path, COURSE / "transforms" / package.name / path.name, made)
     arguments += ["--chdir", str(COURSE / "transforms"), "--"]
     if root:
@@ -85,6 +85,11 @@ def command(package, megabytes=50):
         arguments += ["setpriv", "--reuid", number, "--regid", number, "--clear-groups"]
         arguments += ["--bounding-set=-all", "--inh-caps=-all", "--no-new-privs"]
     return arguments
+
+
+def package_files(package):
+    """The files of the students' package that notebooks get while they are graded: all but the answers' key."""
+    return sorted(path for path in package.glob("*") if path.is_file() and path.name != "key.json")
 
 
 def refusal(root):

@@ -108,7 +108,7 @@ class Sandbox:
             self.folder = tempfile.TemporaryDirectory(prefix="notebook-")
             folder = Path(self.folder.name, "transforms")
             (folder / self.package.name).mkdir(parents=True)
-            for path in self.package.glob("*.py"):
+            for path in bubblewrap.package_files(self.package):
                 (folder / self.package.name / path.name).write_bytes(path.read_bytes())
             paths = [str(HERE), str(folder)]
         start = f"import sys; sys.path[:0] = {paths!r}; import worker; worker.main()"

@@ -22,9 +22,9 @@ def numbers(value, what, lengths=None):
             )
     if value is None:
         raise TypeError(f"{what} must be made of numbers; got None. Does your function return its result?")
-    if np.ma.is_masked(value) or np.iscomplexobj(value):
-        raise TypeError(f"{what} must be made of real numbers, none of them masked; got {value!r}")
     try:
+        if np.ma.is_masked(value) or np.iscomplexobj(value):
+            raise TypeError  # NumPy would drop imaginary parts, and show what is masked
         array = np.array(value, dtype=np.float64)
     except TypeError:
         raise TypeError(f"{what} must be made of numbers; got {type(value).__name__}") from None
