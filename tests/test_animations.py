@@ -254,6 +254,17 @@ def test_a_viewer_knows_what_its_controls_add():
     assert "<iframe" in viewer.figure()
 
 
+def test_a_fixed_frame_that_is_taken_away_leaves_the_root():
+    def appears(scene, there):
+        if there:
+            scene.add_frame("b", STEP)
+
+    viewer = Viewer("a").interact(appears, there=True)
+    viewer.fixed_frame = "b"
+    viewer._motion.controls[0].index = 1
+    assert "Fixed frame a." in viewer.figure()
+
+
 def test_numbers_of_a_slider_are_written_in_full():
     assert control("n", (1000000, 1000010)).as_json()["values"][3] == "1000003"
     assert control("x", (0.0, 1e-9)).as_json()["values"][1] == "1e-11"

@@ -32,7 +32,9 @@ FLAGS = (
 ).split()
 PATIENCE = 60_000  # milliseconds; these machines are slow at times
 FRAME = "name => viewer.scene_tree.find(['meshcat', 'frames', name]).object.matrix.elements"
-ROOT_MATRIX = "() => { const o = viewer.scene_tree.find(['meshcat']).object; o.updateMatrix(); return o.matrix.elements }"
+ROOT_MATRIX = (
+    "() => { const o = viewer.scene_tree.find(['meshcat']).object; o.updateMatrix(); return o.matrix.elements }"
+)
 
 
 class Server:
@@ -390,7 +392,9 @@ def saved(page, server, name, copy):
 def test_a_saved_notebook_without_a_kernel(page, server, tmp_path):
     path = saved(page, server, "3_chaining", "saved")
     exported = subprocess.run(
-        [sys.executable, "-m", "nbconvert", "--to", "html", "--output-dir", tmp_path, path], capture_output=True, text=True
+        [sys.executable, "-m", "nbconvert", "--to", "html", "--output-dir", tmp_path, path],
+        capture_output=True,
+        text=True,
     )
     assert exported.returncode == 0, exported.stderr
     page.goto((tmp_path / "saved.html").as_uri())

@@ -72,7 +72,6 @@ def test_run_all_of_a_solved_notebook(path):
     for cell in checks:
         assert text_of(cell).endswith(": all right."), cell.source
 
-
     pages = [o.data["text/html"] for cell in notebook.cells for o in cell.get("outputs", ()) if "<iframe" in str(o)]
     assert len(pages) >= 3 and max(map(len, pages)) <= 350_000
 

@@ -263,8 +263,14 @@ def test_fields_of_another_kind_are_named(viewer, wrong, message):
 @pytest.mark.parametrize(
     "wrong, message",
     [
-        (marker(Marker.POINTS, [Point()] * 3, colors=[ColorRGBA()]), "as many as points, or none; got 1 colors, 3 points"),
-        (changed(color=ColorRGBA(255, 0, 0, 1)), r"marker n/7: color must be made of numbers from 0 to 1 \(not to 255\)"),
+        (
+            marker(Marker.POINTS, [Point()] * 3, colors=[ColorRGBA()]),
+            "as many as points, or none; got 1 colors, 3 points",
+        ),
+        (
+            changed(color=ColorRGBA(255, 0, 0, 1)),
+            r"marker n/7: color must be made of numbers from 0 to 1 \(not to 255\)",
+        ),
         (changed(header=Header(0, 0, "")), "header.frame_id is empty. Known frames: a, b, c"),
         (changed(header=Header(0, 0, "/a")), "Write it without the slash"),
         (marker(Marker.MESH_RESOURCE), "MESH_RESOURCE are not drawn yet; these are: ARROW, CUBE"),
@@ -328,7 +334,9 @@ def test_a_fresh_orientation_of_a_marker_is_no_rotation_and_no_opacity_is_invisi
 def test_boxes_are_where_their_pose_says(viewer):
     viewer.add_box("table", (2, 1, 0.1), pose=Pose(Point(0, 0, 1), Quaternion(0, 0, HALF, HALF)), frame="b")
     node = next(node for node in drawn(viewer).nodes if node.path == "boxes/table")
-    np.testing.assert_allclose(node.transform @ node.solids[0].matrix @ [0.5, 0, 0, 1], A_T_B @ [0, 1, 1, 1], atol=1e-12)
+    np.testing.assert_allclose(
+        node.transform @ node.solids[0].matrix @ [0.5, 0, 0, 1], A_T_B @ [0, 1, 1, 1], atol=1e-12
+    )
     assert "box table in b: middle (0, 0, 1), 2 x 1 x 0.1 m" in viewer.description()
     viewer.add_box("table", (1, 1, 1), pose=PoseStamped(Header(0, 0, "c"), POSE_OF_B))
     assert "box table in c: middle (1, 2, 3)" in viewer.description()
@@ -386,7 +394,8 @@ def test_the_picture_is_drawn_in_the_fixed_frame(viewer):
 
 
 @pytest.mark.parametrize(
-    "seen_from, right, up", [("above", [1, 0, 0], [0, 1, 0]), ("side", [1, 0, 0], [0, 0, 1]), ("behind", [0, -1, 0], [0, 0, 1])]
+    "seen_from, right, up",
+    [("above", [1, 0, 0], [0, 1, 0]), ("side", [1, 0, 0], [0, 0, 1]), ("behind", [0, -1, 0], [0, 0, 1])],
 )
 def test_where_a_scene_is_seen_from(seen_from, right, up):
     camera = Camera(np.concatenate([np.eye(3), -np.eye(3)]), ASPECT, seen_from)
@@ -522,7 +531,9 @@ def test_a_change_sends_what_changed_and_no_more(viewer):
     assert {c["path"] for c in found if c["type"] == "set_object"} == {"meshcat/points/p/solid0"}
     moved = {c["path"] for c in found if c["type"] == "set_transform"}
     assert {"meshcat/frames/c", "meshcat/points/p"} <= moved and "meshcat/frames/b" not in moved
-    assert {c["path"] for c in unpacked(commands.changes(after, before)) if c["type"] == "delete"} >= {"meshcat/points/p"}
+    assert {c["path"] for c in unpacked(commands.changes(after, before)) if c["type"] == "delete"} >= {
+        "meshcat/points/p"
+    }
 
 
 # Showing it

@@ -119,13 +119,17 @@ def control(name, choices, default=inspect.Parameter.empty):
         return Control(name, "choice", choices, found[0] if given else 0)
     numeric = isinstance(choices, tuple) and all(isinstance(n, numbers.Real) and math.isfinite(n) for n in choices)
     if not numeric or len(choices) not in (2, 3) or not choices[0] < choices[1]:
-        raise ValueError(f"{name}={choices!r}: use (min, max) or (min, max, step) for a slider, a list for a choice; what else has several values, make a list")
+        raise ValueError(
+            f"{name}={choices!r}: use (min, max) or (min, max, step) for a slider, a list for a choice (or make a list of it)"
+        )
     low, high, *step = (n.item() if isinstance(n, np.generic) else n for n in choices)
     step = step[0] if step else 1 if isinstance(low, int) and isinstance(high, int) else (high - low) / 100
     if not 0 < step <= high - low or (high - low) / step >= MOST_VALUES:
         raise ValueError(f"{name}={choices!r}: the step must lead from min to max in at most {MOST_VALUES - 1} steps")
     whole = isinstance(low, int) and isinstance(step, int)
-    values = [low + i * step if whole else float(f"{low + i * step:.12g}") for i in range(int((high - low) / step + 1e-9) + 1)]
+    values = [
+        low + i * step if whole else float(f"{low + i * step:.12g}") for i in range(int((high - low) / step + 1e-9) + 1)
+    ]
     if given and not (isinstance(default, numbers.Real) and low <= default <= high):
         raise ValueError(f"{name}={choices!r}: the default {default!r} is not between min and max")
     start = default if given else values[len(values) // 2]

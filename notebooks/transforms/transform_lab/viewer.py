@@ -194,7 +194,7 @@ class Viewer(Scene):
         from . import page, picture
         from .drawing import grid, in_frame
 
-        fixed = self.fixed_frame if self.fixed_frame in drawing.frames else self.root
+        fixed = self._fixed_in(drawing)
         seen = drawing.seen_from(fixed)
         camera = Camera(seen, page.ASPECT, self._seen_from, top)
         nodes = in_frame(drawing.nodes, drawing.frames[fixed])
@@ -205,8 +205,14 @@ class Viewer(Scene):
         from .drawing import grid
 
         lengths = {frame.length or length for frame in scene.frames.values()}
-        _, step = grid(drawing.seen_from(self.fixed_frame))
+        long = " to ".join(f"{value:g}" for value in sorted({min(lengths), max(lengths)}))
+        fixed = self._fixed_in(drawing)
+        _, step = grid(drawing.seen_from(fixed))
         return (
-            f"Fixed frame {self.fixed_frame}. Axes {' to '.join(f'{v:g}' for v in sorted({min(lengths), max(lengths)}))} m long: X red, Y green,"
-            f" Z blue. Grid at z = 0, squares of {step:g} m. Drag to turn, click and scroll to zoom."
+            f"Fixed frame {fixed}. Axes {long} m long: X red, Y green, Z blue. Grid at z = 0, squares of {step:g} m."
+            " Drag to turn, click and scroll to zoom."
         )
+
+    def _fixed_in(self, drawing):
+        """Return the fixed frame, or the root where an animation or controls have taken the fixed one away."""
+        return self.fixed_frame if self.fixed_frame in drawing.frames else self.root

@@ -21,7 +21,6 @@ from .shapes import (
     translucent,
 )
 
-
 SMALLEST = 1e-6  # metres; what is closer together is at the same place but for rounding
 
 

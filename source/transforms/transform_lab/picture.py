@@ -27,7 +27,9 @@ def render(nodes, grid, camera, text=""):
     axes.set_axis_off()
 
     lines = camera.project(grid)[0]
-    axes.add_collection(LineCollection(lines[np.isfinite(lines).all(axis=(1, 2))], colors="#d8dce2", linewidths=0.7, zorder=0))
+    axes.add_collection(
+        LineCollection(lines[np.isfinite(lines).all(axis=(1, 2))], colors="#d8dce2", linewidths=0.7, zorder=0)
+    )
     polygons, colors, depths = [], [], []
     for node in nodes:
         parts = [_solid(node, solid, camera) for solid in node.solids]
@@ -56,7 +58,9 @@ def _png(pixels):
     from PIL import Image
 
     file = io.BytesIO()
-    Image.fromarray(pixels).convert("RGB").quantize(256, method=Image.Quantize.MAXCOVERAGE).save(file, "PNG", optimize=True)
+    Image.fromarray(pixels).convert("RGB").quantize(256, method=Image.Quantize.MAXCOVERAGE).save(
+        file, "PNG", optimize=True
+    )
     return file.getvalue()
 
 
@@ -87,8 +91,10 @@ def _write(axes, nodes, camera):
 
         x, y = min(candidates, key=badness_at)
         taken.append((x, y, half_width, half_height, 20 if label.beside else 5))
-        axes.text(x, y, label.text, parse_math=False, color=label.color[:3], fontsize=_font_size(label, transform, camera),
-                  fontweight="bold", ha="center", va="center", path_effects=[withStroke(linewidth=3, foreground="white")])  # fmt: skip
+        style = {"fontweight": "bold", "ha": "center", "va": "center", "parse_math": False}
+        outline = [withStroke(linewidth=3, foreground="white")]
+        size = _font_size(label, transform, camera)
+        axes.text(x, y, label.text, color=label.color[:3], fontsize=size, path_effects=outline, **style)
 
 
 def _in_view(label, node, camera):

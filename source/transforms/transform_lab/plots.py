@@ -125,7 +125,15 @@ def _arrow(ax, tail, along, color, opacity=1, name=""):
     style = {"arrowstyle": "-|>", "color": color[:3], "alpha": opacity, "linewidth": 2.5, "mutation_scale": 14}
     ax.annotate("", tail + along, tail, arrowprops={**style, "shrinkA": 0, "shrinkB": 0})
     if name:
-        ax.text(*(tail + 1.17 * along), name, parse_math=False, color=color[:3], alpha=max(opacity, 0.6), ha="center", va="center")
+        ax.text(
+            *(tail + 1.17 * along),
+            name,
+            parse_math=False,
+            color=color[:3],
+            alpha=max(opacity, 0.6),
+            ha="center",
+            va="center",
+        )
 
 
 def _outline(ax, matrix, color):

@@ -37,7 +37,6 @@ class _Node:
         if shell:
             shell.events.register("post_run_cell", lambda *_: self.show())
         else:
-            import matplotlib.backends.backend_agg  # noqa: F401: what draws cannot be imported while Python ends
             import meshcat  # noqa: F401
 
             atexit.register(self.write)
@@ -96,7 +95,9 @@ class Publisher:
 
     def __init__(self, name, data_class, **options):
         if data_class is not Marker:
-            raise TypeError(f"Publisher: only Marker messages can be seen here; got {getattr(data_class, '__name__', data_class)}")
+            raise TypeError(
+                f"Publisher: only Marker messages can be seen here; got {getattr(data_class, '__name__', data_class)}"
+            )
 
     def publish(self, marker):
         """Draw a Marker as RViz does. The first one's header.frame_id becomes the fixed frame.

@@ -352,7 +352,9 @@ def _check_fields(marker):
     if not isinstance(marker.header.frame_id, str):
         found = type(marker.header.frame_id).__name__
         raise TypeError(f"marker {marker_name(marker)}: header.frame_id must be a text; got {found}")
-    if not isinstance(marker.text, str) or not all(isinstance(n, Integral) for n in (marker.id, marker.type, marker.action)):
+    if not isinstance(marker.text, str) or not all(
+        isinstance(n, Integral) for n in (marker.id, marker.type, marker.action)
+    ):
         raise TypeError(f"marker {marker_name(marker)}: text must be a text, and id, type and action whole numbers")
 
 
