@@ -138,7 +138,7 @@ def test_what_is_no_rigid_transform_is_refused(viewer, transform, message):
     assert "frame d" not in viewer.description()
 
 
-@pytest.mark.parametrize("odd", [A_T_B * 1j, np.ma.masked_less(A_T_B, 0), A_T_B.astype(object) + 10**400])
+@pytest.mark.parametrize("odd", [A_T_B * 1j, np.ma.masked_less(A_T_B, 0), [[10**400] * 4] * 4])
 def test_numbers_that_are_no_real_numbers_are_refused(viewer, odd):
     with pytest.raises((TypeError, ValueError), match="must be made of numbers|a number that is too large"):
         viewer.add_frame("d", odd)

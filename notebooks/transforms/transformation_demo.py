@@ -1,9 +1,12 @@
 #! /usr/bin/env python
 
 import math
-
 import numpy as np
-from transform_lab import ColorRGBA, Point, Pose, PoseStamped, rospy, visualization_msgs
+from transform_lab import Point, Pose, PoseStamped
+from transform_lab import ColorRGBA
+from transform_lab import visualization_msgs
+from transform_lab import rospy
+from transform_lab import tft
 
 
 def wait_for_time():

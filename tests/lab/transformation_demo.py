@@ -1,12 +1,12 @@
 #! /usr/bin/env python
 
 import math
-
 import numpy as np
-import rospy
-import visualization_msgs.msg
 from geometry_msgs.msg import Point, Pose, PoseStamped
 from std_msgs.msg import ColorRGBA
+import visualization_msgs.msg
+import rospy
+import tf.transformations as tft
 
 
 def wait_for_time():
