@@ -263,6 +263,8 @@ def test_a_fixed_frame_that_is_taken_away_leaves_the_root():
     viewer.fixed_frame = "b"
     viewer._motion.controls[0].index = 1
     assert "Fixed frame a." in viewer.figure()
+    assert viewer.description().startswith("Scene in the fixed frame a")
+    assert plot_from_above(viewer).get_xlabel() == "x of a"
 
 
 def test_numbers_of_a_slider_are_written_in_full():

@@ -77,8 +77,7 @@ class Link:
             if self._later is not None:
                 self._later.cancel()
                 self._later = None
-            motion, viewer = self._motion, self._viewer
-            drawing = draw(motion.scene(viewer, motion.arguments) if motion else viewer.copy(), self.length)
+            drawing = draw(self._viewer.state_of(self._motion), self.length)
             now = properties(drawing.nodes)
             commands = changes({} if everything else self._sent, now)
             if everything:

@@ -189,7 +189,6 @@ function addPlayer(row, last, seconds, show) {
   const button = row.appendChild(document.createElement("button")), slider = document.createElement("input");
   Object.assign(slider, {type: "range", min: 0, max: last, step: "any", value: last, className: "wide"});
   slider.setAttribute("aria-label", "Time");
-  slider.style.flex = 1;
   row.append(slider);
   let before = null;
   const title = () => button.textContent = before === null ? "▶ Play" : "❚❚ Pause";

@@ -10,7 +10,7 @@ import os
 
 import numpy as np
 
-from .shapes import DARK, X_RED, Y_GREEN, Z_BLUE
+from .shapes import CORNERS, DARK, X_RED, Y_GREEN, Z_BLUE
 from .validation import numbers
 
 __all__ = ["plot_columns", "plot_from_above", "plot_quaternion"]
@@ -79,28 +79,28 @@ def plot_from_above(viewer, ax=None):
 
     scene = viewer.state()
     (drawing,), length = draw_all([scene], viewer.at)
-    seen = drawing.seen_from(viewer.fixed_frame)[:, :2]
+    seen = drawing.seen_from(scene.fixed_frame)[:, :2]
     margin = 0.12 * max(np.ptp(seen, axis=0).max(), 1e-6)
     (left, bottom), (right, top) = seen.min(axis=0) - margin, seen.max(axis=0) + margin
     ax = ax or _new_axes(6, 4.5)
     ax.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
-    ax.set(xlabel=f"x of {viewer.fixed_frame}", ylabel=f"y of {viewer.fixed_frame}", title="From above")
-    for node in in_frame(drawing.nodes, drawing.frames[viewer.fixed_frame]):
+    ax.set(xlabel=f"x of {scene.fixed_frame}", ylabel=f"y of {scene.fixed_frame}", title="From above")
+    for node in in_frame(drawing.nodes, drawing.frames[scene.fixed_frame]):
         if node.path.startswith(("boxes/", "grippers/")):
             for solid in node.solids:
                 _outline(ax, node.transform @ solid.matrix, solid.color)
     for name, frame in scene.frames.items():
-        T = scene.lookup(viewer.fixed_frame, name)
+        T = scene.lookup(scene.fixed_frame, name)
         for i, color in enumerate((X_RED, Y_GREEN)):
             _arrow(ax, T[:2, 3], (frame.length or length) * T[:2, i], color, 0.35 if frame.ghost else 1)
         _name(ax, name, T[:2, 3])
     for name, arrow in scene.arrows.items():
-        T = scene.lookup(viewer.fixed_frame, arrow.frame)
+        T = scene.lookup(scene.fixed_frame, arrow.frame)
         tail, tip = (T[:2, :3] @ end + T[:2, 3] for end in (arrow.tail, arrow.tip))
         _arrow(ax, tail, tip - tail, arrow.color, 0.35 if arrow.ghost else 1)
         _name(ax, name, (tail + tip) / 2)
     for name, point in scene.points.items():
-        T = scene.lookup(viewer.fixed_frame, point.frame)
+        T = scene.lookup(scene.fixed_frame, point.frame)
         place = T[:2, :3] @ point.position + T[:2, 3]
         ax.plot(*place, "o", color=point.color[:3])
         _name(ax, name, place)
@@ -125,23 +125,15 @@ def _arrow(ax, tail, along, color, opacity=1, name=""):
     style = {"arrowstyle": "-|>", "color": color[:3], "alpha": opacity, "linewidth": 2.5, "mutation_scale": 14}
     ax.annotate("", tail + along, tail, arrowprops={**style, "shrinkA": 0, "shrinkB": 0})
     if name:
-        ax.text(
-            *(tail + 1.17 * along),
-            name,
-            parse_math=False,
-            color=color[:3],
-            alpha=max(opacity, 0.6),
-            ha="center",
-            va="center",
-        )
+        style = {"color": color[:3], "alpha": max(opacity, 0.6), "parse_math": False}
+        ax.text(*(tail + 1.17 * along), name, ha="center", va="center", **style)
 
 
 def _outline(ax, matrix, color):
     """Draw the outline of a unit box moved by `matrix`."""
     from scipy.spatial import ConvexHull
 
-    corners = np.array([[x, y, z, 1] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
-    flat = (corners @ matrix.T)[:, :2]
+    flat = (CORNERS @ matrix[:3, :3].T + matrix[:3, 3])[:, :2]
     ax.fill(*flat[ConvexHull(flat).vertices].T, facecolor=(*color[:3], 0.35 * color[3]), edgecolor=color[:3])
 
 

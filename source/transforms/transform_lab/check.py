@@ -114,8 +114,8 @@ def _exercise(name):
 
 
 def _show(verdict, points):
-    shell = _shell()
-    if shell is None:
+    ipython = shell()
+    if ipython is None:
         print(panel.text(verdict, None if verdict.right else points))
         return
     from IPython.display import display
@@ -130,7 +130,7 @@ def _show(verdict, points):
     )
     if not verdict.right:
         # nbgrader reads the cell's first result as the points it earned; without this line a stub would earn them all.
-        shell.displayhook(_Points(*points))
+        ipython.displayhook(_Points(*points))
 
 
 class _Points:
@@ -144,7 +144,7 @@ class _Points:
         return {"text/plain": f"{self.earned:g}", "text/html": note}
 
 
-def _shell():
+def shell():
     """IPython's shell where there is one; a plain `python` script has none."""
     if "IPython" not in sys.modules:
         return None

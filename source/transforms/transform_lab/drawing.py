@@ -8,6 +8,7 @@ import numpy as np
 from . import tft
 from .scene import marker_name, marker_pose
 from .shapes import (
+    CORNERS,
     GREY,
     Label,
     Node,
@@ -46,20 +47,18 @@ class Drawing:
         self.seen = np.concatenate([self.seen, *(T[:3, 3] + around for T in self.frames.values())])
 
 
-def draw(scene, length, at=None):
-    """Return the Drawing of a scene with axes of `length` metres, where no other was asked for.
-
-    `at` names the frames and things that have to be in view; None is everything.
-    """
-    drawing = _draw(scene, at)
-    _add_sized(scene, drawing, length, at)
+def draw(scene, length):
+    """Return the Drawing of a scene with axes of `length` metres, where no other was asked for."""
+    drawing = _draw(scene, None)
+    _add_sized(scene, drawing, length, None)
     return drawing
 
 
 def draw_all(scenes, at=None):
     """Return a Drawing for each of `scenes` (states of one scene), with axes of one length, and that length in metres.
 
-    The length is the largest that was asked for, or a round number that fits the scenes.
+    The length is the largest that was asked for, or a round number that fits the scenes. `at` names the frames and
+    things that have to be in view; None is everything.
     """
     drawings = [_draw(scene, at) for scene in scenes]
     if not any(len(drawing.seen) for drawing in drawings):
@@ -147,10 +146,9 @@ def round_number(value):
 
 def _corners(nodes):
     """Return arrays of points (Nx3) of the root frame that enclose all that hangs on `nodes`."""
-    box = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
     corners = []
     for node in nodes:
-        corners += [_moved(node.transform @ solid.matrix, box) for solid in node.solids]
+        corners += [_moved(node.transform @ solid.matrix, CORNERS) for solid in node.solids]
         corners += [_moved(node.transform, cloud.points) for cloud in node.clouds]
         corners += [_moved(node.transform, mesh.corners.reshape(-1, 3)) for mesh in node.meshes]
         corners += [_moved(node.transform, label.position)[None] for label in node.labels]

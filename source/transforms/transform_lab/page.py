@@ -63,14 +63,14 @@ def render(drawing, fixed_frame, seen_from, motion=None, states=(), live=None):
     `seen_from` is one of camera.VIEWS; `states` are Drawings of the same scene that `motion`, a Motion, goes through;
     `live` is the name under which the kernel sends changes.
     """
-    drawings = [drawing, *states]
-    commands, frames = [], []
+    drawings, found = [drawing, *states], labels(drawing.nodes)
+    commands, frames, top = [], [], text_height(drawings)
     there = [name for name in drawing.frames if all(name in d.frames for d in drawings)][:MOST_CHOICES]
     for i, name in enumerate(there):
         seen = np.concatenate([d.seen_from(name) for d in drawings])
         commands.append(set_object(f"grid{i}", ("lines", grid(seen)[0].tobytes())))
         commands.append(set_property(f"grid{i}/<object>", "renderOrder", -1.0))  # first, so that all else covers it
-        cameras = {view: Camera(seen, ASPECT, view, text_height(drawings)) for view in VIEWS}
+        cameras = {view: Camera(seen, ASPECT, view, top) for view in VIEWS}
         frames.append({
             "name": name,
             "path": f"meshcat/{node_path('frames', name)}",
@@ -79,7 +79,7 @@ def render(drawing, fixed_frame, seen_from, motion=None, states=(), live=None):
     commands += [set_property(path, "visible", False) for path in ("Grid", "Axes", "Background")]
     base = properties(drawing.nodes)
     blocks = [block(commands + changes({}, base))]
-    moving, told = _add_states(blocks, base, labels(drawing.nodes), states)
+    moving, told = _add_states(blocks, base, found, states)
     view = {
         "states": told,
         "moving": moving,
@@ -92,7 +92,7 @@ def render(drawing, fixed_frame, seen_from, motion=None, states=(), live=None):
         "seenFrom": seen_from,
         "fov": math.degrees(FIELD_OF_VIEW),
         "nearest": NEAREST,
-        "labels": labels(drawing.nodes),
+        "labels": found,
         "beside": BESIDE,
         "text": drawing.text,
     }

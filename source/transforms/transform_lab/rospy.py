@@ -5,10 +5,10 @@ named after its node, to be opened in a browser.
 """
 
 import atexit
-import sys
 import time
 from pathlib import Path
 
+from .check import shell
 from .messages import Marker
 from .viewer import Viewer
 
@@ -33,11 +33,10 @@ class _Node:
         """See to it that what was published is shown at the end of the cell, or of the script."""
         if self.watching:
             return
-        shell = _shell()
-        if shell:
-            shell.events.register("post_run_cell", lambda *_: self.show())
+        if ipython := shell():
+            ipython.events.register("post_run_cell", lambda *_: self.show())
         else:
-            import meshcat  # noqa: F401
+            import meshcat  # noqa: F401  (what it brings along cannot be imported any more while Python ends)
 
             atexit.register(self.write)
         self.watching = True
@@ -72,20 +71,11 @@ def __getattr__(name):
     raise AttributeError(f"rospy.{name} is not here. There is what the lab's script uses: {', '.join(__all__)}")
 
 
-def _shell():
-    """Return IPython's shell where there is one; a plain script has none."""
-    if "IPython" not in sys.modules:
-        return None
-    from IPython import get_ipython
-
-    return get_ipython()
-
-
 def init_node(name, **options):
     """Start the node `name` (a text without slashes or spaces) with an empty view; `options` have no effect here."""
     if not isinstance(name, str) or not name.replace("_", "").isalnum():
         raise ValueError(f"init_node: a node's name is made of letters, digits and _; got {name!r}")
-    if not _shell():
+    if not shell():
         _node.write()  # what an earlier node published
     _node.name, _node.viewer, _node.shown = name, None, True
 

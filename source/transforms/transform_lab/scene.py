@@ -86,8 +86,11 @@ class Scene:
 
     @property
     def fixed_frame(self):
-        """The frame in which the scene is drawn and looked at; any known frame can be made the fixed one."""
-        return self._fixed_frame
+        """The frame in which the scene is drawn and looked at; any known frame can be made the fixed one.
+
+        Where an animation or controls have taken it away, it is the root.
+        """
+        return self._fixed_frame if self._fixed_frame in self.state().frames else self.root
 
     @fixed_frame.setter
     def fixed_frame(self, name):
@@ -116,7 +119,7 @@ class Scene:
         Raises ValueError for a parent that is not known, and for what is no rigid transform, naming the property that
         fails: shape, NaN, bottom row, columns at right angles and of length 1, determinant +1, quaternion of length 1.
         """
-        what = f"add_frame({_name(name, 'add_frame: the name')!r})"
+        what = _call("add_frame", name)
         if name == self.root:
             raise ValueError(f"{what}: {name!r} is the frame this viewer was made with; the others are described in it")
         parent, matrix = self._placed(parent, transform, what, "parent")
@@ -132,12 +135,13 @@ class Scene:
     def add_point(self, name, position, frame=None, color=ORANGE, ghost=False):
         """Add the point `name`, or replace it: `position` is a Point or 3 numbers in `frame`.
 
-        By default the frame is the root. Four numbers are taken as homogeneous
-        coordinates. `color` is a ColorRGBA, or 3 or 4 numbers from 0 to 1. A `ghost` is translucent, and larger.
+        By default the frame is the root. Four numbers are taken as homogeneous coordinates. `color` is a ColorRGBA, or
+        3 or 4 numbers from 0 to 1. A `ghost` is translucent, and larger.
         """
-        frame = self._known(frame, f"add_point({_name(name, 'add_point: the name')!r}): the frame")
-        position = _position(position, f"add_point({name!r}): the position")
-        self.points[name] = Point(frame, position, rgba(color, f"add_point({name!r}): the color"), bool(ghost))
+        what = _call("add_point", name)
+        frame = self._known(frame, f"{what}: the frame")
+        position = _position(position, f"{what}: the position")
+        self.points[name] = Point(frame, position, rgba(color, f"{what}: the color"), bool(ghost))
         self._changed()
 
     def add_arrow(self, name, tip, tail=(0, 0, 0), frame=None, color=PURPLE, ghost=False):
@@ -145,9 +149,10 @@ class Scene:
 
         By default it starts at the origin of the frame; `frame`, `color` and `ghost` as in `add_point`.
         """
-        frame = self._known(frame, f"add_arrow({_name(name, 'add_arrow: the name')!r}): the frame")
-        tail, tip = (_position(p, f"add_arrow({name!r}): the {end}") for p, end in ((tail, "tail"), (tip, "tip")))
-        self.arrows[name] = Arrow(frame, tail, tip, rgba(color, f"add_arrow({name!r}): the color"), bool(ghost))
+        what = _call("add_arrow", name)
+        frame = self._known(frame, f"{what}: the frame")
+        tail, tip = (_position(p, f"{what}: the {end}") for p, end in ((tail, "tail"), (tip, "tip")))
+        self.arrows[name] = Arrow(frame, tail, tip, rgba(color, f"{what}: the color"), bool(ghost))
         self._changed()
 
     def add_box(self, name, size, pose=None, frame=None, color=BROWN, ghost=False):
@@ -156,7 +161,7 @@ class Scene:
         Its middle is at `pose` in `frame`: a Pose, a PoseStamped or a 4x4 transform, by default the frame's origin.
         `frame`, `color` and `ghost` as in `add_point`.
         """
-        what = f"add_box({_name(name, 'add_box: the name')!r})"
+        what = _call("add_box", name)
         frame, matrix = self._placed(frame, np.eye(4) if pose is None else pose, what, "frame")
         size = within_reach(numbers(size, f"{what}: the size", lengths=(3,)), f"{what}: the size")
         if not (size >= NEAREST).all():
@@ -283,6 +288,11 @@ def _name(name, what):
     if len(name) > 100 or not name.isprintable():
         raise ValueError(f"{what} must be at most 100 letters that can be printed; got {name[:100]!r}")
     return name
+
+
+def _call(method, name):
+    """Return how the call that adds the thing `name` is named in errors; raise an error for what is no name."""
+    return f"{method}({_name(name, f'{method}: the name')!r})"
 
 
 def _size(value, what):

@@ -108,7 +108,11 @@ class Viewer(Scene):
 
     def state(self):
         """Return the Scene that is shown: what the viewer holds, and what an animation or controls add to it now."""
-        return self._motion.scene(self, self._motion.arguments) if self._motion else self.copy()
+        return self.state_of(self._motion)
+
+    def state_of(self, motion):
+        """Return the Scene of what the viewer holds and of what `motion`, a Motion or None, adds to it now."""
+        return motion.scene(self, motion.arguments) if motion else self.copy()
 
     def description(self):
         return Scene.description(self.state())
@@ -169,8 +173,8 @@ class Viewer(Scene):
             link.length = length
             if not states:
                 drawing.leave_room(length)
-        body = page.render(drawing, self.fixed_frame, self._seen_from, self._motion, states, link and link.name)
-        still = self._picture(drawing, page.text_height([drawing, *states]))
+        body = page.render(drawing, scene.fixed_frame, self._seen_from, self._motion, states, link and link.name)
+        still = self._picture(scene, drawing, page.text_height([drawing, *states]))
         caption = self._caption(scene, drawing, length)
         rows = 1 + (len(self._motion.controls) + bool(self._motion.seconds) if self._motion else 0)
         return page.over_picture(body, still, Scene.description(scene), caption, rows)
@@ -179,8 +183,8 @@ class Viewer(Scene):
         """Return the scene as a still picture: the bytes of a PNG file."""
         from . import page
 
-        _, drawing, states, _ = self._drawings()
-        return self._picture(drawing, page.text_height([drawing, *states]))
+        scene, drawing, states, _ = self._drawings()
+        return self._picture(scene, drawing, page.text_height([drawing, *states]))
 
     def _drawings(self):
         """Return the Scene that is shown, its Drawing, those of the states computed beforehand, the length of axes."""
@@ -190,14 +194,13 @@ class Viewer(Scene):
         (drawing, *states), length = draw_all([scene, *(self._motion.scenes(self) if self._motion else ())], self.at)
         return scene, drawing, states, length
 
-    def _picture(self, drawing, top):
+    def _picture(self, scene, drawing, top):
         from . import page, picture
         from .drawing import grid, in_frame
 
-        fixed = self._fixed_in(drawing)
-        seen = drawing.seen_from(fixed)
+        seen = drawing.seen_from(scene.fixed_frame)
         camera = Camera(seen, page.ASPECT, self._seen_from, top)
-        nodes = in_frame(drawing.nodes, drawing.frames[fixed])
+        nodes = in_frame(drawing.nodes, drawing.frames[scene.fixed_frame])
         return picture.render(nodes, grid(seen)[0], camera, drawing.text)
 
     def _caption(self, scene, drawing, length):
@@ -206,13 +209,8 @@ class Viewer(Scene):
 
         lengths = {frame.length or length for frame in scene.frames.values()}
         long = " to ".join(f"{value:g}" for value in sorted({min(lengths), max(lengths)}))
-        fixed = self._fixed_in(drawing)
-        _, step = grid(drawing.seen_from(fixed))
+        _, step = grid(drawing.seen_from(scene.fixed_frame))
         return (
-            f"Fixed frame {fixed}. Axes {long} m long: X red, Y green, Z blue. Grid at z = 0, squares of {step:g} m."
+            f"Fixed frame {scene.fixed_frame}. Axes {long} m long: X red, Y green, Z blue. Grid at z = 0, squares of {step:g} m."
             " Drag to turn, click and scroll to zoom."
         )
-
-    def _fixed_in(self, drawing):
-        """Return the fixed frame, or the root where an animation or controls have taken the fixed one away."""
-        return self.fixed_frame if self.fixed_frame in drawing.frames else self.root
