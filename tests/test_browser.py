@@ -135,7 +135,8 @@ class Opened:
         page.goto(f"{server.url}/{at}/{name}.ipynb{query}token={server.token}")
         page.wait_for_function("() => window.jupyterapp")
         page.locator(".jp-Notebook .jp-Cell").first.wait_for()
-        page.wait_for_function("() => document.querySelector('.jp-Notebook .jp-InputPrompt')")
+        # until the file has been read, there is one empty cell
+        page.wait_for_function("() => window.jupyterapp.shell.currentWidget?.context?.isReady")
 
     def command(self, name):
         self.page.evaluate("name => window.jupyterapp.commands.execute(name)", name)
