@@ -303,7 +303,8 @@ def test_scene_and_slider_agree(live):
     scene.wait_for_function("() => document.getElementById('text').textContent === 'ValueError: thirteen'")
     slider.fill("301")  # not among those computed beforehand, so the kernel has answered
     until(scene, "b", about_z(301))
-    scene.evaluate("() => location.reload()")  # as when the browser drops a scene and it is wanted again
+    # as when the browser drops a scene and it is wanted again
+    scene.evaluate("() => { document.body.style.background = 'none'; location.reload() }")
     scene = live.scene(0)
     shown = float(scene.locator("output").inner_text())
     until(scene, "b", about_z(shown))
