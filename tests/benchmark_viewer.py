@@ -6,6 +6,7 @@ Chromium, how many a second arrive and are drawn while a slider is dragged in Ju
 graphics are computed without a graphics card).
 """
 
+import shutil
 import statistics
 import sys
 import tempfile
@@ -93,11 +94,11 @@ def browser_rate():
     server = Server(Path(tempfile.mkdtemp()) / "work")
     try:
         with sync_playwright() as playwright:
-            browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=FLAGS)
+            browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
             page = browser.new_page(viewport={"width": 1100, "height": 900})
             notebook = Opened(page, server, "1_rotation")
             notebook.run_all()
-            scene = next(s for s in map(notebook.scene, notebook.figures()) if s.query_selector("input[name=degrees]"))
+            scene = notebook.scene_with("input[name=degrees]")
             return scene.evaluate(
                 """() => new Promise(done => {
                   const slider = document.querySelector("input[name=degrees]"), start = performance.now();

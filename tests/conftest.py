@@ -33,6 +33,12 @@ def course(released, tmp_path):
     return Course(tmp_path / "course")
 
 
+SOFTWARE_WEBGL = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+CHROMIUM_FLAGS = (
+    "--no-sandbox --disable-gpu --disable-background-networking --disable-component-update --disable-sync --no-first-run"
+).split()
+
+
 def lacking(what):
     """Skip a test for want of something this machine does not have; in CI that is a failure."""
     if os.environ.get("CI") == "true":
@@ -49,7 +55,7 @@ def sandboxed():
         lacking(problem)
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def chromium():
     """The path of a Chromium browser."""
     found = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")

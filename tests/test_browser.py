@@ -18,7 +18,7 @@ import urllib.request
 import nbformat
 import numpy as np
 import pytest
-from conftest import ROOT, lacking
+from conftest import CHROMIUM_FLAGS, ROOT, SOFTWARE_WEBGL
 from PIL import Image
 from transform_lab import tft
 
@@ -26,10 +26,7 @@ pytestmark = pytest.mark.xdist_group("browser")
 
 NOTEBOOKS = [path.stem for path in sorted((ROOT / "notebooks/transforms").glob("*.ipynb"))]
 SCREENSHOTS = ROOT / "screenshots"
-FLAGS = (
-    "--no-sandbox --disable-gpu --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader"
-    " --disable-background-networking --disable-component-update --disable-sync --no-first-run"
-).split()
+FLAGS = [*CHROMIUM_FLAGS, *SOFTWARE_WEBGL]
 PATIENCE = 60_000  # milliseconds; these machines are slow at times
 FRAME = "name => viewer.scene_tree.find(['meshcat', 'frames', name]).object.matrix.elements"
 ROOT_MATRIX = (
@@ -97,14 +94,13 @@ def server(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def browser():
+def browser(chromium):
     from playwright.sync_api import sync_playwright
 
-    executable = shutil.which("chromium") or lacking("needs Chromium, to open notebooks as a student does")
     with sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(executable_path=executable, args=FLAGS)
-        yield chromium
-        chromium.close()
+        launched = playwright.chromium.launch(executable_path=chromium, args=FLAGS)
+        yield launched
+        launched.close()
 
 
 @pytest.fixture
@@ -173,6 +169,10 @@ class Opened:
         place.scroll_into_view_if_needed()
         return drawn(place)
 
+    def scene_with(self, selector):
+        """Return the first scene that has such an element."""
+        return next(scene for scene in map(self.scene, self.figures()) if scene.query_selector(selector))
+
 
 def drawn(place):
     """Return the frame at `place` (an iframe) once its scene is drawn."""
@@ -225,7 +225,7 @@ def test_run_all_in_jupyterlab(page, server, name):
 def test_a_slider_turns_a_frame_while_it_is_dragged(page, server):
     notebook = Opened(page, server, "1_rotation")
     notebook.run_all()
-    scene = next(s for s in map(notebook.scene, notebook.figures()) if s.query_selector("input[name=degrees]"))
+    scene = notebook.scene_with("input[name=degrees]")
     before = frame_in(scene, "frame_b")
     slider = scene.locator("input[name=degrees]")
     box = slider.bounding_box()
@@ -354,7 +354,7 @@ def test_any_frame_can_be_the_fixed_one(page, server):
 def test_an_animation_plays(page, server):
     notebook = Opened(page, server, "3_chaining")
     notebook.run_all()
-    scene = next(s for s in map(notebook.scene, notebook.figures()) if s.query_selector("button"))
+    scene = notebook.scene_with("button")
     play(scene)
 
 
@@ -411,7 +411,7 @@ def test_a_saved_notebook_without_a_kernel(page, server, tmp_path):
 def test_controls_of_a_saved_notebook_show_what_was_computed_beforehand(page, server):
     saved(page, server, "1_rotation", "kept")
     notebook = Opened(page, server, "1_rotation", fresh=False)  # with a new kernel, which knows nothing
-    scene = next(s for s in map(notebook.scene, notebook.figures()) if s.query_selector("input[name=degrees]"))
+    scene = notebook.scene_with("input[name=degrees]")
     scene.locator("input[name=degrees]").fill("0")
     until(scene, "frame_b", about_z(-180))
     assert scene.locator("#text").inner_text().startswith("[[-1.")

@@ -13,6 +13,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import umsgpack
+from conftest import CHROMIUM_FLAGS, SOFTWARE_WEBGL
 from PIL import Image
 from transform_lab import commands, drawing, page, picture, shapes, tft
 from transform_lab.camera import Camera
@@ -638,11 +639,7 @@ def test_names_may_contain_slashes(viewer):
 
 # In a browser
 
-FLAGS = (
-    "--headless --no-sandbox --disable-gpu --disable-background-networking --disable-component-update --disable-sync"
-    " --no-first-run --virtual-time-budget=8000 --window-size=800,500 --dump-dom"
-).split()
-SOFTWARE_WEBGL = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+FLAGS = [*CHROMIUM_FLAGS, "--headless", "--virtual-time-budget=8000", "--window-size=800,500", "--dump-dom"]
 
 
 @pytest.fixture

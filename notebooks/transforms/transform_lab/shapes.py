@@ -88,6 +88,11 @@ def path(kind, name):
     return f"{kind}/{quote(name, safe='')}"
 
 
+def moved(transform, points):
+    """Return points (...x3) moved by a 4x4 matrix."""
+    return points @ transform[:3, :3].T + transform[:3, 3]
+
+
 def placed(kind, position, size, color):
     """Return a Solid at `position`, its axes along those of the node, of `size` (3 numbers or one)."""
     matrix = np.eye(4)

@@ -16,6 +16,7 @@ from .shapes import (
     draw_marker,
     frame_node,
     gripper_node,
+    moved,
     path,
     placed,
     rod,
@@ -93,7 +94,7 @@ def _draw(scene, at):
         ends += _corners(nodes[-1:]) if at is None or gripper.frame in at else []
     for name, thing in (*scene.points.items(), *scene.arrows.items()):
         if at is None or name in at:
-            ends += [_moved(where[thing.frame], p)[None] for p in vars(thing).values() if isinstance(p, np.ndarray)]
+            ends += [moved(where[thing.frame], p)[None] for p in vars(thing).values() if isinstance(p, np.ndarray)]
     ends += [T[None, :3, 3] for name, T in where.items() if at is None or name in at]
     return Drawing(nodes, where, np.concatenate(ends), scene.text)
 
@@ -105,7 +106,7 @@ def _add_sized(scene, drawing, length, at):
         drawing.nodes.append(frame_node(name, where[name], frame.length or length, frame.ghost))
         if at is None or name in at:
             tips = [label.position for label in drawing.nodes[-1].labels]
-            drawing.seen = np.concatenate([drawing.seen, _moved(where[name], np.array(tips))])
+            drawing.seen = np.concatenate([drawing.seen, moved(where[name], np.array(tips))])
         if frame.parent is not None:
             line = rod(where[frame.parent][:3, 3], where[name][:3, 3], 0.25 * thickness, GREY)
             drawing.nodes.append(Node(path("links", name), np.eye(4), line))
@@ -148,16 +149,11 @@ def _corners(nodes):
     """Return arrays of points (Nx3) of the root frame that enclose all that hangs on `nodes`."""
     corners = []
     for node in nodes:
-        corners += [_moved(node.transform @ solid.matrix, CORNERS) for solid in node.solids]
-        corners += [_moved(node.transform, cloud.points) for cloud in node.clouds]
-        corners += [_moved(node.transform, mesh.corners.reshape(-1, 3)) for mesh in node.meshes]
-        corners += [_moved(node.transform, label.position)[None] for label in node.labels]
+        corners += [moved(node.transform @ solid.matrix, CORNERS) for solid in node.solids]
+        corners += [moved(node.transform, cloud.points) for cloud in node.clouds]
+        corners += [moved(node.transform, mesh.corners.reshape(-1, 3)) for mesh in node.meshes]
+        corners += [moved(node.transform, label.position)[None] for label in node.labels]
     return corners
-
-
-def _moved(transform, points):
-    """Return points (3 numbers or Nx3) moved by a 4x4 matrix."""
-    return points @ transform[:3, :3].T + transform[:3, 3]
 
 
 def _readable(color):

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from .shapes import BESIDE
+from .shapes import BESIDE, moved
 
 HEIGHT = 4.5  # inches
 DOTS_PER_INCH = 110
@@ -73,10 +73,10 @@ def _write(axes, nodes, camera):
     taken = []  # centre, half width and half height of what is drawn, and how bad it is to cover that
     for label, transform in labels:
         marks = [1] if label.beside else [0.3, 0.6, 0.9]  # the thing named, or along the axis to its letter
-        places = camera.project(np.outer(marks, label.position) @ transform[:3, :3].T + transform[:3, 3])[0]
+        places = camera.project(moved(transform, np.outer(marks, label.position)))[0]
         taken += [(x, y, line / 4, line / 4, 1) for x, y in places]
     for label, transform in sorted(labels, key=lambda pair: pair[0].beside):
-        place = camera.project(transform[:3, :3] @ label.position + transform[:3, 3])[0]
+        place = camera.project(moved(transform, label.position))[0]
         half_width, half_height = 0.011 * len(label.text), line / 2
         candidates = [place + [right * half_width, up * line] for right, up in BESIDE] if label.beside else [place]
 
@@ -99,7 +99,7 @@ def _write(axes, nodes, camera):
 
 def _in_view(label, node, camera):
     """Whether what a label names can be seen; where everything else has moved out of view, its name goes too."""
-    place = camera.project(node.transform[:3, :3] @ label.position + node.transform[:3, 3])[0]
+    place = camera.project(moved(node.transform, label.position))[0]
     return bool(((place > 0) & (place < [camera.aspect, 1])).all())
 
 
@@ -107,7 +107,7 @@ def _font_size(label, transform, camera):
     """Return the size in points of a label's text."""
     if label.height is None:
         return 10
-    depth = camera.project(transform[:3, :3] @ label.position + transform[:3, 3])[1]
+    depth = camera.project(moved(transform, label.position))[1]
     # a capital is 0.72 of its font's size; above 400 points the picture would be all letter
     return min(72 * HEIGHT * label.height / (2 * camera.tangent * depth) / 0.72, 400)
 
@@ -115,7 +115,7 @@ def _font_size(label, transform, camera):
 def _solid(node, solid, camera):
     """Return what can be seen of a solid: polygons (Nx4x2) in the picture, their colours and their distances."""
     matrix = node.transform @ solid.matrix
-    faces = UNIT[solid.kind] @ matrix[:3, :3].T + matrix[:3, 3]
+    faces = moved(matrix, UNIT[solid.kind])
     centers = faces.mean(axis=1)
     normals = np.cross(faces[:, 2] - faces[:, 0], faces[:, 3] - faces[:, 1])
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
@@ -131,7 +131,7 @@ def _solid(node, solid, camera):
 
 def _cloud(node, cloud, camera):
     """Return the squares of a point cloud, as `_solid` does."""
-    points = cloud.points @ node.transform[:3, :3].T + node.transform[:3, 3]
+    points = moved(node.transform, cloud.points)
     corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) @ [camera.right, camera.up] * cloud.size / 2
     places, depths = camera.project(points[:, None] + corners)
     return places, cloud.colors, depths.mean(axis=1)
@@ -139,7 +139,7 @@ def _cloud(node, cloud, camera):
 
 def _mesh(node, mesh, camera):
     """Return the triangles of a mesh as polygons of four corners, as `_solid` does; both sides are seen."""
-    corners = mesh.corners @ node.transform[:3, :3].T + node.transform[:3, 3]
+    corners = moved(node.transform, mesh.corners)
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
     towards = np.sign(((camera.eye - corners.mean(axis=1)) * normals).sum(axis=1))

@@ -10,7 +10,7 @@ import os
 
 import numpy as np
 
-from .shapes import CORNERS, DARK, X_RED, Y_GREEN, Z_BLUE
+from .shapes import CORNERS, DARK, X_RED, Y_GREEN, Z_BLUE, moved
 from .validation import numbers
 
 __all__ = ["plot_columns", "plot_from_above", "plot_quaternion"]
@@ -96,12 +96,12 @@ def plot_from_above(viewer, ax=None):
         _name(ax, name, T[:2, 3])
     for name, arrow in scene.arrows.items():
         T = scene.lookup(scene.fixed_frame, arrow.frame)
-        tail, tip = (T[:2, :3] @ end + T[:2, 3] for end in (arrow.tail, arrow.tip))
+        tail, tip = (moved(T, end)[:2] for end in (arrow.tail, arrow.tip))
         _arrow(ax, tail, tip - tail, arrow.color, 0.35 if arrow.ghost else 1)
         _name(ax, name, (tail + tip) / 2)
     for name, point in scene.points.items():
         T = scene.lookup(scene.fixed_frame, point.frame)
-        place = T[:2, :3] @ point.position + T[:2, 3]
+        place = moved(T, point.position)[:2]
         ax.plot(*place, "o", color=point.color[:3])
         _name(ax, name, place)
     return ax
@@ -133,7 +133,7 @@ def _outline(ax, matrix, color):
     """Draw the outline of a unit box moved by `matrix`."""
     from scipy.spatial import ConvexHull
 
-    flat = (CORNERS @ matrix[:3, :3].T + matrix[:3, 3])[:, :2]
+    flat = moved(matrix, CORNERS)[:, :2]
     ax.fill(*flat[ConvexHull(flat).vertices].T, facecolor=(*color[:3], 0.35 * color[3]), edgecolor=color[:3])
 
 
