@@ -21,6 +21,7 @@ import pytest
 from conftest import CHROMIUM_FLAGS, ROOT, SOFTWARE_WEBGL
 from PIL import Image
 from transform_lab import tft
+from transform_lab.animations import between
 
 pytestmark = pytest.mark.xdist_group("browser")
 
@@ -301,10 +302,14 @@ def test_scene_and_slider_agree(live):
     slider = scene.locator("input[name=degrees]")
     slider.fill("13")
     scene.wait_for_function("() => document.getElementById('text').textContent === 'ValueError: thirteen'")
-    slider.fill("301")  # not among those computed beforehand, so the kernel has answered
-    until(scene, "b", about_z(301))
-    # as when the browser drops a scene and it is wanted again
-    scene.evaluate("() => { document.body.style.background = 'none'; location.reload() }")
+    for degrees in range(301, 306):  # not among those computed beforehand, so the kernel has answered
+        slider.fill(str(degrees))
+        until(scene, "b", about_z(degrees))
+    # the browser drops the scene, so that the picture is seen, and it comes back when it is wanted again
+    scene.evaluate("() => { viewer.renderer.getContext().getExtension('WEBGL_lose_context').loseContext() }")
+    scene.wait_for_function("() => document.body.style.background === 'none'")
+    assert not scene.locator("canvas").is_visible()
+    scene.evaluate("() => { document.documentElement.dispatchEvent(new Event('mouseenter')) }")
     scene = live.scene(0)
     shown = float(scene.locator("output").inner_text())
     until(scene, "b", about_z(shown))
@@ -341,7 +346,9 @@ def test_any_frame_can_be_the_fixed_one(page, server):
     notebook = Opened(page, server, "3_chaining")
     notebook.run_all()
     scene = notebook.scene(notebook.figures()[0])
+    before = scene.evaluate("() => viewer.camera.position.toArray()")
     scene.locator("select").first.select_option(label="C")
+    assert scene.evaluate("() => viewer.camera.position.toArray()") != before
     root_T_c = frame_in(scene, "C")
     c_T_root = np.reshape(scene.evaluate(ROOT_MATRIX), (4, 4)).T
     np.testing.assert_allclose(c_T_root @ root_T_c, np.eye(4), atol=1e-6)
@@ -374,6 +381,8 @@ def play(scene):
     assert places[0] < 0.5 and places == sorted(places)
     np.testing.assert_allclose(frame_in(scene, "B"), end, atol=1e-6)
     np.testing.assert_allclose(frame_in(scene, "E")[:3, 3], [0, 0, 0.8], atol=1e-6)
+    scene.locator("input[type=range]").fill("2.5")  # between the third and the fourth of the moments computed beforehand
+    until(scene, "B", between(np.eye(4), end, 2.5 / 6))
 
 
 def saved(page, server, name, copy):
