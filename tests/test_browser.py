@@ -381,7 +381,7 @@ def play(scene):
     assert places[0] < 0.5 and places == sorted(places)
     np.testing.assert_allclose(frame_in(scene, "B"), end, atol=1e-6)
     np.testing.assert_allclose(frame_in(scene, "E")[:3, 3], [0, 0, 0.8], atol=1e-6)
-    scene.locator("input[type=range]").fill("2.5")  # between the third and the fourth of the moments computed beforehand
+    scene.locator("input[type=range]").fill("2.5")  # between two of the moments computed beforehand
     until(scene, "B", between(np.eye(4), end, 2.5 / 6))
 
 
