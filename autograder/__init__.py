@@ -10,3 +10,7 @@ from pathlib import Path
 _SOURCE = str(Path(__file__).resolve().parent.parent / "source" / "transforms")
 if _SOURCE not in sys.path:
     sys.path.insert(0, _SOURCE)
+
+# nbformat imports jsonschema, and jsonschema this one, which takes a second to build a grammar of international web
+# addresses. No notebook's schema asks for them, and jsonschema does without.
+sys.modules.setdefault("rfc3987_syntax", None)

@@ -1,6 +1,6 @@
-"""Runs a student's notebook where it can do no harm: bubblewrap around a small IPython, spoken to over sockets."""
+"""Runs a student's notebook where it can do no harm: a small IPython in bubblewrap, spoken to over a socket."""
 
-from .bubblewrap import exposes, problem, refusal
-from .host import Ended, Limits, Sandbox
+from .bubblewrap import NotStarted, exposes, problem, refusal
+from .host import Ended, ForkServer, Limits, Sandbox
 
-__all__ = ["Ended", "Limits", "Sandbox", "exposes", "problem", "refusal"]
+__all__ = ["Ended", "ForkServer", "Limits", "NotStarted", "Sandbox", "exposes", "problem", "refusal"]

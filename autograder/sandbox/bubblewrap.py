@@ -1,24 +1,33 @@
-"""The command line that puts a process into a sandbox, and the probe that tells whether it works on this machine.
+"""An empty sandbox, which bubblewrap makes and holds open; and the probe that tells whether it works on this machine.
 
-Inside there are: /usr and the Python in use (read-only), the worker's code, the students' package without its key,
-small writable folders, and nothing else of this machine: no network, no other processes, no environment.
+Inside there are: /usr and the Python in use (read-only), the students' package without its key, small writable
+folders, and nothing else of this machine: no network, no other processes, no environment.
 """
 
+import json
 import os
+import select
 import shutil
+import signal
 import subprocess
 import sys
+import tempfile
 from functools import cache
 from pathlib import Path
 
-WORKER = Path("/grader")  # where the worker's code lies inside
-COURSE = Path("/course")  # where notebooks run inside; the students' package lies in it
 HERE = Path(__file__).parent
-WORKER_FILES = ("channel.py", "worker.py", "executor.py")
+CODE = ("channel.py", "executor.py", "forkserver.py", "seccomp.py")  # what runs in a notebook's process
+COURSE = Path("/course")  # where notebooks run inside; the students' package lies in it
+WRITABLE = (Path("/tmp"), Path("/dev/shm"), COURSE)
+PATIENCE = 60.0  # seconds for a sandbox to open or close, on a machine under load
 
 INSTALL = (
     "bubblewrap (the command bwrap) is not installed. On Debian or Ubuntu: sudo apt-get install bubblewrap; "
     "on Fedora: sudo dnf install bubblewrap."
+)
+NO_SECCOMP = (
+    "The library libseccomp, which filters system calls, is not installed. On Debian or Ubuntu: sudo apt-get install "
+    "libseccomp2; on Fedora: sudo dnf install libseccomp."
 )
 REFUSED = (
     "bubblewrap is installed but may not make namespaces here ({reason}). In a container, allow unprivileged user "
@@ -31,6 +40,109 @@ EXPOSED = (
 )
 
 
+class NotStarted(RuntimeError):
+    """The sandbox did not come up; the message has the reason that bubblewrap gave."""
+
+
+class Namespaces:
+    """A sandbox without a program of its own: processes enter it by its `pidfd`, and all end with it.
+
+    code: the folder with the students' package and the grader's code for notebooks' processes (see `copy_code`)
+    """
+
+    def __init__(self, code):
+        # The arguments go by a file: as a command line, anybody inside could read them.
+        with tempfile.TemporaryFile() as arguments, tempfile.TemporaryFile() as errors:
+            arguments.write(b"\0".join(os.fsencode(argument) for argument in command(code)))
+            arguments.seek(0)
+            information, theirs = os.pipe()
+            self.process = subprocess.Popen(
+                [shutil.which("bwrap"), "--args", str(arguments.fileno()), "--info-fd", str(theirs), "cat"],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=errors,
+                pass_fds=(arguments.fileno(), theirs),
+                start_new_session=True,  # Ctrl-C is for the grader
+            )
+            os.close(theirs)
+            with open(information, "rb") as told:
+                text = told.read()
+            self.pid, self.pidfd = None, None
+            try:
+                self.pid = json.loads(text)["child-pid"]
+                self.pidfd = os.pidfd_open(self.pid)
+                os.write(self.process.stdin.fileno(), b"?")  # `cat` answers once everything is mounted
+                started = os.read(self.process.stdout.fileno(), 1) == b"?"
+            except (ValueError, OSError):
+                started = False
+            if not started:
+                self.close()
+                errors.seek(0)
+                said = " ".join(errors.read().decode(errors="replace").split())
+                raise NotStarted(said[:300] or f"bubblewrap ended with exit code {self.process.returncode}")
+
+    def close(self):
+        """End every process inside, and wait until they are gone."""
+        if self.pidfd is not None:
+            try:
+                signal.pidfd_send_signal(self.pidfd, signal.SIGKILL)
+            except ProcessLookupError:
+                pass  # it is gone already, and everything inside with it
+            select.select([self.pidfd], [], [], PATIENCE)
+            os.close(self.pidfd)
+            self.pidfd = None
+        else:
+            self.process.kill()
+        self.process.stdin.close()
+        self.process.stdout.close()
+        self.process.wait()
+
+
+def command(code, megabytes=50):
+    """The arguments of `bwrap` that describe the sandbox.
+
+    megabytes: the size of each writable folder
+    """
+    package = code / "transform_lab"
+    root = os.getuid() == 0
+    arguments = ["--die-with-parent", "--new-session", "--clearenv"]
+    arguments += ["--unshare-ipc", "--unshare-pid", "--unshare-net", "--unshare-uts", "--unshare-cgroup-try"]
+    # Root keeps the user namespace it has, and notebooks' processes become nobody in it (forkserver.py).
+    arguments += ["--cap-drop", "ALL"] if root else ["--unshare-user"]
+    arguments += ["--ro-bind", "/usr", "/usr"]
+    for link in ("bin", "sbin", "lib", "lib32", "lib64"):
+        if Path("/", link).is_symlink():
+            arguments += ["--symlink", os.readlink(Path("/", link)), f"/{link}"]
+        elif Path("/", link).is_dir():
+            arguments += ["--ro-bind", f"/{link}", f"/{link}"]
+    arguments += ["--proc", "/proc", "--dev", "/dev"]
+    for folder in map(str, WRITABLE):
+        arguments += ["--perms", "1777", "--size", str(megabytes * 1_000_000), "--tmpfs", folder]
+    arguments += ["--perms", "0777", "--dir", str(COURSE / "transforms")]
+    made = {*WRITABLE, COURSE / "transforms"}
+    for path in filter(Path.exists, map(Path, ("/etc/ld.so.cache", "/etc/fonts"))):
+        arguments += _bind(path, path, made)
+    for folder in _python():
+        if not folder.is_relative_to("/usr") and folder not in made:
+            arguments += _bind(folder, folder, made)
+    arguments += _bind(code, code, made)
+    arguments += _bind(package, COURSE / "transforms" / package.name, made)
+    return [*arguments, "--chdir", str(COURSE / "transforms")]
+
+
+def copy_code(package):
+    """A new folder, to be removed by whoever asked, with all of the grader's and the course's that notebooks may see.
+
+    package: the folder of `transform_lab`; its key.json is left out, so that no expected value is inside
+    """
+    folder = Path(tempfile.mkdtemp(prefix="grader-"))
+    folder.chmod(0o755)
+    for name in CODE:
+        shutil.copy(HERE / name, folder)
+    shutil.copytree(package, folder / package.name, ignore=shutil.ignore_patterns("key.json", "__pycache__"))
+    return folder
+
+
 @cache
 def problem():
     """None when sandboxes work on this machine; else what is wrong and what to do, in one line."""
@@ -40,56 +152,19 @@ def problem():
         )
     if shutil.which("bwrap") is None:
         return INSTALL
-    python = [*command(Path("/nonexistent")), sys.executable, "-I", "-c", ""]
-    probe = subprocess.run(python, capture_output=True, text=True, timeout=60)
-    if probe.returncode == 0:
-        return None
-    return REFUSED.format(reason=" ".join(probe.stderr.split())[:200] or f"exit {probe.returncode}")
+    try:
+        import pyseccomp  # noqa: F401
+    except (ImportError, OSError, RuntimeError):
+        return NO_SECCOMP
+    import transform_lab
 
+    from .host import Sandbox
 
-def command(package, megabytes=50):
-    """The arguments that run a command in the sandbox: `subprocess.run([*command(package), "true"])`.
-
-    package: the folder of `transform_lab`; its key.json is left out, so that no expected value is inside.
-    megabytes: the size of each writable folder.
-    """
-    root = os.getuid() == 0
-    arguments = [shutil.which("bwrap"), "--die-with-parent", "--new-session", "--clearenv"]
-    arguments += ["--unshare-ipc", "--unshare-pid", "--unshare-net", "--unshare-uts", "--unshare-cgroup-try"]
-    if not root:
-        arguments += ["--unshare-user"]
-    arguments += ["--ro-bind", "/usr", "/usr"]
-    for link in ("bin", "sbin", "lib", "lib32", "lib64"):
-        if Path("/", link).is_symlink():
-            arguments += ["--symlink", os.readlink(Path("/", link)), f"/{link}"]
-        elif Path("/", link).is_dir():
-            arguments += ["--ro-bind", f"/{link}", f"/{link}"]
-    arguments += ["--proc", "/proc", "--dev", "/dev"]
-    for folder in ("/tmp", "/dev/shm", str(COURSE)):
-        arguments += ["--perms", "1777", "--size", str(megabytes * 1_000_000), "--tmpfs", folder]
-    arguments += ["--perms", "0777", "--dir", str(COURSE / "transforms")]
-    made = {Path("/tmp"), COURSE, COURSE / "transforms"}
-    for path in filter(Path.exists, map(Path, ("/etc/ld.so.cache", "/etc/fonts"))):
-        arguments += _bind(path, path, made)
-    for folder in _python():
-        if not folder.is_relative_to("/usr") and folder not in made:
-            arguments += _bind(folder, folder, made)
-    for name in WORKER_FILES:
-        arguments += _bind(HERE / name, WORKER / name, made)
-    for path in package_files(package):
-        arguments += _bind(path, COURSE / "transforms" / package.name / path.name, made)
-    arguments += ["--chdir", str(COURSE / "transforms"), "--"]
-    if root:
-        # Without a user namespace of its own, root inside would still be root to every file: become nobody.
-        number = str(100_000 + os.getpid() % 1_000_000)
-        arguments += ["setpriv", "--reuid", number, "--regid", number, "--clear-groups"]
-        arguments += ["--bounding-set=-all", "--inh-caps=-all", "--no-new-privs"]
-    return arguments
-
-
-def package_files(package):
-    """The files of the students' package that notebooks get while they are graded: all but the answers' key."""
-    return sorted(path for path in package.glob("*") if path.is_file() and path.name != "key.json")
+    try:
+        with Sandbox(Path(transform_lab.__file__).parent) as sandbox, sandbox.notebook():
+            return None
+    except NotStarted as error:
+        return REFUSED.format(reason=error)
 
 
 def refusal(root):

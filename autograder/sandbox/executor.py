@@ -5,19 +5,25 @@ clear_output, figures, magics, `!commands`, top-level await.
 """
 
 import asyncio
+import base64
 import builtins
 import ctypes
+import json
 import os
+import random
 import signal
 import sys
 import tempfile
+from pathlib import Path
 
+import numpy as np
 from IPython.core.display_trap import DisplayTrap
 from IPython.core.displayhook import DisplayHook
 from IPython.core.displaypub import DisplayPublisher
 from IPython.core.error import StdinNotImplementedError
 from IPython.core.interactiveshell import InteractiveShell
 from traitlets import Any
+from traitlets.config import Config
 from transform_lab.check import call, one_line
 
 MOST_OUTPUT = 2_000_000  # bytes of output a notebook may make
@@ -33,10 +39,11 @@ class Outputs:
         """Append one output; text of the same stream as before is joined to it."""
         if self.clear_next:
             self.items, self.clear_next = [], False
-        size = len(repr(output))
         if self.left <= 0:
             return
-        self.left -= size
+        text = json.dumps(output, default=_plain)
+        output = json.loads(text)
+        self.left -= len(text)
         if self.left <= 0:
             output = {"output_type": "stream", "name": "stderr", "text": "[more output than the grader keeps]\n"}
         last = self.items[-1] if self.items else {}
@@ -55,6 +62,11 @@ class Outputs:
         """The outputs so far, without what only the executor needs; the next cell begins with none."""
         taken, self.items, self.clear_next = self.items, [], False
         return [{key: value for key, value in output.items() if key != "transient"} for output in taken]
+
+
+def _plain(value):
+    """What JSON has no form for: bytes as Jupyter sends them, anything else by its name."""
+    return base64.b64encode(value).decode() if isinstance(value, bytes) else repr(value)
 
 
 class Stream:
@@ -161,25 +173,40 @@ class Interrupted(KeyboardInterrupt):
         return [str(self)]
 
 
+NO_HISTORY = Config(HistoryManager={"enabled": False})  # nothing to look back to, and no thread that writes it down
+
+
 class Executor:
     """One notebook: its namespace, its outputs, and the student's functions."""
 
     def __init__(self):
-        self.running = False
-        signal.signal(signal.SIGINT, self._interrupt)
+        """All that can be made before it is known which notebook is run."""
         self.outputs = Outputs()
-        Shell.clear_instance()
-        self.shell = Shell.instance(outputs=self.outputs, colors="nocolor", history_length=0)
-        self.shell.history_manager.enabled = False
+        self.shell = Shell.instance(outputs=self.outputs, colors="nocolor", config=NO_HISTORY)
         self.shell.user_ns["exit"] = self.shell.user_ns["quit"] = self._exit
         builtins.input = _no_input
+        self.libc = ctypes.CDLL(None)
+        self.running = False
+
+    def start(self, files):
+        """The rest, in the notebook's own process and folder.
+
+        files: what the student handed in besides notebooks, {path relative to the folder: bytes as base64}
+        """
+        random.seed()
+        np.random.seed()
+        signal.signal(signal.SIGINT, self._interrupt)
         self.raw = [tempfile.TemporaryFile() for _ in ("stdout", "stderr")]  # what C code and commands write
         for descriptor, file in enumerate(self.raw, start=1):
             os.dup2(file.fileno(), descriptor)
         sys.stdout, sys.stderr = Stream("stdout", self.outputs, 1), Stream("stderr", self.outputs, 2)
-        self.libc = ctypes.CDLL(None)
         self.loop = asyncio.new_event_loop()
         asyncio.set_event_loop(self.loop)
+        # Only now: a student's own numpy.py must not become the grader's.
+        for path, content in files.items():
+            Path(path).parent.mkdir(parents=True, exist_ok=True)
+            Path(path).write_bytes(base64.b64decode(content))
+        sys.path.insert(0, "")  # as in Jupyter: modules beside the notebook
 
     def run_cell(self, source):
         """Run one cell: {"outputs", "execution_count", "ended"}."""

@@ -1,7 +1,10 @@
 """The grader's side of a sandbox: start it, run a notebook's cells in it, call the notebook's functions."""
 
 import base64
+import os
 import secrets
+import shutil
+import signal
 import socket
 import subprocess
 import sys
@@ -14,44 +17,59 @@ from transform_lab import codec
 from transform_lab.verdict import Reply
 
 from ..outputs import printable
-from . import bubblewrap
+from .bubblewrap import COURSE, PATIENCE, Namespaces, NotStarted, copy_code
 from .channel import Channel, Closed, Garbled, Late
+from .watch import Watch
 
-HERE = Path(__file__).parent
+NOBODY = 100_000  # when the grader is root, each notebook runs as a user of its own: this number and up
+GLANCE = 0.25  # seconds between two looks at what a sandbox uses
+ENVIRONMENT = {
+    "OPENBLAS_NUM_THREADS": "1",
+    "PATH": "/usr/bin:/bin",
+    "LANG": "C.UTF-8",
+    "TRANSFORM_LAB_GRADING": "1",
+    "MPLBACKEND": "module://matplotlib_inline.backend_inline",
+}
 
 
 @dataclass(frozen=True)
 class Limits:
-    """What a notebook may use. Seconds are of wall time.
+    """What a notebook may use. Seconds are of time in which it could run: waiting for a busy processor is not counted.
 
-    A call or a cell that reaches its limit costs itself; a notebook that does costs its exercises from there on.
+    A call or a cell that reaches its limit costs itself; a notebook or submission that does costs its exercises from
+    there on.
     """
 
     cell: float = 10.0
     call: float = 3.0
     notebook: float = 90.0
+    submission: float = 240.0
     grace: float = 1.0  # between the interrupt and the end of the process
-    start: float = 60.0
-    memory: int = 2_000_000_000  # bytes of address space for each process
-    processes: int = 100
+    cpu: float = 60.0  # of processor time, all processes of a notebook together
+    memory: int = 2_000_000_000  # bytes of address space for each process, and of memory for all of them together
+    processes: int = 64  # threads count, too
     file: int = 20_000_000  # bytes of one file
+    files: int = 20_000
+    descriptors: int = 256  # open files, pipes and sockets of a process
 
     def resources(self):
         """For resource.setrlimit, inside the sandbox."""
         return {
             "RLIMIT_AS": self.memory,
+            "RLIMIT_CPU": int(self.cpu) + 1,
             "RLIMIT_FSIZE": self.file,
             "RLIMIT_CORE": 0,
             "RLIMIT_NPROC": self.processes,
+            "RLIMIT_NOFILE": self.descriptors,
         }
 
 
 class Ended(Exception):
-    """The notebook's process is gone: "timeout" when it did not heed the interrupt, else "killed"."""
+    """The notebook's process is gone: "timeout" when it did not heed the interrupt, else "killed"; why, in words."""
 
-    def __init__(self, status):
-        super().__init__(status)
-        self.status = status
+    def __init__(self, status, reason):
+        super().__init__(reason)
+        self.status, self.reason = status, reason
 
 
 @dataclass
@@ -63,8 +81,62 @@ class CellRun:
     ended: bool = False  # the cell called exit() or quit()
 
 
+class ForkServer:
+    """The grader's handle on a forkserver.py of its own, which lives as long as the grader's process.
+
+    package: the folder of the students' package `transform_lab`
+    """
+
+    current = None
+
+    @classmethod
+    def of_this_process(cls, package):
+        """The one that runs, or a new one; a process that was forked from the grader gets its own."""
+        found = cls.current
+        if not found or found.owner != os.getpid() or found.package != package or found.process.poll() is not None:
+            cls.current = cls(package)
+        return cls.current
+
+    def __init__(self, package):
+        self.owner, self.package, self.ready = os.getpid(), package, False
+        self.code = copy_code(package)
+        self.control, inside = socket.socketpair()
+        start = f"import sys; sys.path.insert(0, {str(self.code)!r}); import forkserver; forkserver.main()"
+        self.errors = tempfile.TemporaryFile()  # of a Python that does not start: this machine's, and worth reading
+        self.process = subprocess.Popen(
+            [sys.executable, "-I", "-B", "-X", "utf8", "-c", start],
+            stdin=inside,
+            stdout=self.errors,
+            stderr=self.errors,
+            env=ENVIRONMENT,
+            cwd="/",
+            start_new_session=True,  # Ctrl-C is for the grader
+        )
+        inside.close()
+
+    def fork(self, connection, namespaces=None):
+        """Start a notebook's process that speaks over `connection` (the far end of a socket), inside `namespaces`."""
+        try:
+            if not self.ready:
+                self.control.settimeout(PATIENCE)
+                self.ready = self.control.recv(1) == b"R"
+            handles = [connection.fileno(), *([namespaces.pidfd] if namespaces else [])]
+            socket.send_fds(self.control, [b"F"], handles)
+        except OSError:
+            self.ready = False
+        if not self.ready:
+            self.process.kill()
+            self.process.wait()
+            raise NotStarted(f"Python did not start for a notebook: {self.said() or 'no answer in time'}")
+
+    def said(self):
+        """The end of what it wrote: why it failed, or why a notebook's process did before it ran anything."""
+        self.errors.seek(0)
+        return " ".join(self.errors.read().decode(errors="replace").split())[-300:]
+
+
 class Sandbox:
-    """One submission's sandbox: a context manager whose `notebook()` gives a fresh process for each notebook.
+    """Where one submission is run: a context manager whose `notebook()` gives a fresh sandbox for each notebook.
 
     package: the folder of the students' package `transform_lab`
     files: what the student handed in besides notebooks, {relative path: bytes}
@@ -72,114 +144,91 @@ class Sandbox:
     """
 
     def __init__(self, package, files=None, limits=Limits(), isolated=True):
-        self.package, self.files, self.limits, self.isolated = package, files or {}, limits, isolated
-        self.process = self.control = self.folder = self.errors = None
+        self.package, self.limits, self.isolated = package, limits, isolated
+        self.files = {path: base64.b64encode(content).decode() for path, content in (files or {}).items()}
 
     def __enter__(self):
-        self._start()
+        self.deadline = time.monotonic() + self.limits.submission
         return self
 
     def __exit__(self, *_):
-        self._stop()
+        """Each notebook has cleaned up after itself."""
 
     def notebook(self, deadline=None):
-        """A fresh NotebookProcess; starts the sandbox again if the student's code brought it down.
+        """A NotebookProcess in a new sandbox.
 
         deadline: when the notebook's time is over (time.monotonic), for one that is run again
         """
-        if self.process.poll() is not None:
-            self._stop()
-            self._start()
-        return NotebookProcess(self, deadline or time.monotonic() + self.limits.notebook)
-
-    def said(self):
-        """The end of what the worker itself wrote: the reason, when it failed."""
-        self.errors.seek(0)
-        return " ".join(self.errors.read().decode(errors="replace").split())[-500:]
-
-    def _start(self):
-        self.control, inside = socket.socketpair()
-        arguments, folder = [sys.executable, "-I", "-B", "-X", "utf8", "-c"], None
-        if self.isolated:
-            arguments = [*bubblewrap.command(self.package), *arguments]
-            paths = [str(bubblewrap.WORKER), str(bubblewrap.COURSE / "transforms")]
-        else:
-            # Without bubblewrap: a folder of its own with the same files, which is tidy, but protects nothing.
-            self.folder = tempfile.TemporaryDirectory(prefix="notebook-")
-            folder = Path(self.folder.name, "transforms")
-            (folder / self.package.name).mkdir(parents=True)
-            for path in bubblewrap.package_files(self.package):
-                (folder / self.package.name / path.name).write_bytes(path.read_bytes())
-            paths = [str(HERE), str(folder)]
-        start = f"import sys; sys.path[:0] = {paths!r}; import worker; worker.main()"
-        environment = {"OPENBLAS_NUM_THREADS": "1", "PATH": "/usr/bin:/bin", "LANG": "C.UTF-8", "HOME": "/tmp"}
-        environment |= {"TRANSFORM_LAB_GRADING": "1", "MPLBACKEND": "module://matplotlib_inline.backend_inline"}
-        if not self.isolated:
-            environment["HOME"] = self.folder.name
-        # The errors of the worker itself (a Python that does not start) are this machine's, and worth reading.
-        self.errors = tempfile.TemporaryFile()
-        self.process = subprocess.Popen(
-            [*arguments, start], stdin=inside, stdout=self.errors, stderr=self.errors, cwd=folder
-        )
-        inside.close()
-        settings = {
-            "limits": self.limits.resources() if self.isolated else {},
-            "environment": environment,
-            "files": {path: base64.b64encode(content).decode() for path, content in self.files.items()},
-            "isolated": self.isolated,
-        }
-        try:
-            grader = Channel(self.control)
-            grader.send(settings)
-            grader.receive(time.monotonic() + self.limits.start)
-        except (Closed, Late, Garbled, OSError) as error:
-            self._stop()
-            raise RuntimeError(f"the sandbox did not start: {self.said() or 'no answer in time'}") from error
-
-    def _stop(self):
-        self.control.close()
-        if self.isolated:
-            self.process.kill()  # with the namespace's first process, all others in it end
-        try:
-            self.process.wait(self.limits.start)
-        except subprocess.TimeoutExpired:
-            self.process.kill()
-            self.process.wait()
-        if self.folder:
-            self.folder.cleanup()
+        return NotebookProcess(self, min(deadline or time.monotonic() + self.limits.notebook, self.deadline))
 
 
 class NotebookProcess:
-    """One notebook's process in a sandbox: a context manager with `run_cell` and `call`."""
+    """One notebook's process and all around it: a context manager with `run_cell` and `call`."""
 
     def __init__(self, sandbox, deadline):
-        self.sandbox, self.limits, self.deadline = sandbox, sandbox.limits, deadline
+        self.limits, self.deadline = sandbox.limits, deadline
+        self.gone, self.glanced = False, time.monotonic()  # gone: whether its process had to be stopped, or died
+        self.namespaces = self.folder = self.pid = self.handle = self.watch = None
         connection, inside = socket.socketpair()
-        connection.settimeout(self.limits.grace + 5)  # for sending to a process that does not read
+        connection.settimeout(PATIENCE)
         self.channel = Channel(connection)
-        self.gone = False  # whether its process had to be stopped, or died
-        socket.send_fds(sandbox.control, [b"S"], [inside.fileno()])
-        inside.close()
+        settings = {"files": sandbox.files, "isolated": sandbox.isolated}
+        server = ForkServer.of_this_process(sandbox.package)
+        try:
+            if sandbox.isolated:
+                self.namespaces = Namespaces(server.code)
+                settings |= {"limits": self.limits.resources(), "number": NOBODY + self.namespaces.pid}
+                settings |= {"folder": str(COURSE / "transforms"), "environment": {"HOME": "/tmp"}}
+            else:
+                # A folder of its own with the same files, which is tidy, but protects nothing.
+                self.folder = tempfile.TemporaryDirectory(prefix="notebook-", ignore_cleanup_errors=True)
+                folder = Path(self.folder.name, "transforms")
+                shutil.copytree(server.code / sandbox.package.name, folder / sandbox.package.name)
+                settings |= {"limits": {}, "folder": str(folder), "environment": {"HOME": self.folder.name}}
+            server.fork(inside, self.namespaces)
+            inside.close()
+            self._meet(connection)
+            self.channel.send(settings)
+            self.channel.receive(time.monotonic() + PATIENCE)
+            connection.settimeout(self.limits.grace + 5)  # for sending to a process that does not read
+        except (Closed, Late, Garbled, OSError) as error:
+            self.__exit__()
+            reason = str(error) or server.said() or type(error).__name__
+            raise NotStarted(f"a notebook's process did not start: {reason}") from error
+        except BaseException:
+            self.__exit__()
+            raise
+
+    def _meet(self, connection):
+        """Learn from the guard which process it started."""
+        message, handles, _, _ = socket.recv_fds(connection, 200, 1)
+        if message[:1] != b"P":
+            raise OSError(message[1:].decode(errors="replace") or "its fork server ended")
+        self.pid, self.handle = int(message[1:]), handles[0] if handles else None
+        if self.namespaces:
+            self.watch = Watch(self.namespaces.pid, self.pid, self.limits)
 
     def __enter__(self):
         return self
+
+    def __exit__(self, *_):
+        self.channel.connection.close()
+        if self.namespaces:
+            self.namespaces.close()
+        elif self.pid:
+            try:
+                os.killpg(self.pid, signal.SIGKILL)
+            except (ProcessLookupError, PermissionError):
+                pass  # it has ended by itself
+        if self.handle is not None:
+            os.close(self.handle)
+        if self.folder:
+            self.folder.cleanup()
 
     @property
     def exhausted(self):
         """Whether the notebook's time is over."""
         return time.monotonic() >= self.deadline
-
-    def __exit__(self, *_):
-        self.channel.connection.close()
-        try:
-            self.sandbox.control.sendall(b"K")
-            self.sandbox.control.settimeout(self.limits.grace + 5)
-            answer = self.sandbox.control.recv(1)
-        except OSError:
-            answer = b""
-        if answer != b"k":
-            self.sandbox.process.kill()  # the next notebook gets a new sandbox
-            self.sandbox.process.wait()
 
     def run_cell(self, source):
         """Run a cell; raises Ended when its process had to be stopped or died."""
@@ -189,14 +238,14 @@ class NotebookProcess:
             count = reply["execution_count"]
             return CellRun(outputs, count if type(count) is int else None, reply["ended"] is True)
         except (KeyError, TypeError, ValueError) as error:
-            raise self._ended("killed") from error
+            raise self._ended("killed", "its process gave an answer that the grader's own code never gives") from error
 
     def call(self, name, args, kwargs):
         """Call the notebook's function `name` with plain arguments: a Reply; "timeout" or "killed" are outcomes."""
         try:
             reply = self._request("call", [name, args, kwargs], self.limits.call)
         except Ended as ended:
-            return Reply(ended.status)
+            return Reply(ended.status, error=ended.reason)
         outcome, error, printed = reply.get("outcome"), reply.get("error", ""), reply.get("printed", "")
         try:
             codec.decode(reply.get("value"))
@@ -204,28 +253,61 @@ class NotebookProcess:
             if not known or not isinstance(error, str) or not isinstance(printed, str):
                 raise codec.NotPlain("an unknown outcome")
         except codec.NotPlain:
-            self.gone = True  # no executor of ours writes that
-            return Reply("killed")
+            ended = self._ended("killed", "its process gave an answer that the grader's own code never gives")
+            return Reply(ended.status, error=ended.reason)
         return Reply(outcome, reply.get("value"), reply.get("arguments"), printable(error[:300]), printed[:300])
 
     def _request(self, action, arguments, seconds):
         nonce = secrets.token_hex(16)
-        now = time.monotonic()
-        if self.gone or now >= self.deadline:
-            raise self._ended("timeout")
-        deadline = min(now + seconds, self.deadline)
+        if self.gone or self.exhausted:
+            raise self._ended("timeout", "the notebook's time was over")
+        if time.monotonic() - self.glanced > GLANCE and (excess := self._excess()):
+            raise self._ended("killed", f"it used {excess}")
         try:
             self.channel.send({"nonce": nonce, "action": action, "arguments": arguments})
             try:
-                return self.channel.answer_to(nonce, deadline)
+                return self._answer(nonce, seconds)
             except Late:
-                self.sandbox.control.sendall(b"I")
-                return self.channel.answer_to(nonce, deadline + self.limits.grace)
+                self._interrupt()
+                return self._answer(nonce, self.limits.grace, time.monotonic() + self.limits.grace)
         except Late as error:
-            raise self._ended("timeout") from error
-        except (Closed, Garbled, OSError) as error:
-            raise self._ended("killed") from error
+            raise self._ended("timeout", "it took too long, and did not heed the interrupt") from error
+        except Closed as error:
+            raise self._ended("killed", "its process ended all of a sudden") from error
+        except (Garbled, OSError) as error:
+            raise self._ended("killed", "its process sent what the grader's own code never sends") from error
 
-    def _ended(self, status):
+    def _answer(self, nonce, seconds, latest=None):
+        """The answer to a request; raises Late after `seconds` in which the notebook's process could run."""
+        latest = latest or self.deadline
+        start, waited = time.monotonic(), None
+        until = min(start + seconds, latest)
+        while True:
+            try:
+                return self.channel.answer_to(nonce, min(time.monotonic() + GLANCE, until))
+            except Late:
+                if excess := self._excess():
+                    raise self._ended("killed", f"it used {excess}")
+                if waited is None:
+                    waited = self.watch.waited() if self.watch else 0.0
+                elif self.watch:  # others kept the processor busy: that time is given back
+                    until = min(start + seconds + self.watch.waited() - waited, latest)
+                if time.monotonic() >= until:
+                    raise
+
+    def _excess(self):
+        self.glanced = time.monotonic()
+        return self.watch.excess() if self.watch else None
+
+    def _interrupt(self):
+        try:
+            if self.handle is not None:
+                signal.pidfd_send_signal(self.handle, signal.SIGINT)
+            else:
+                os.kill(self.pid, signal.SIGINT)
+        except ProcessLookupError:
+            pass  # it has just ended; the channel tells
+
+    def _ended(self, status, reason):
         self.gone = True
-        return Ended(status)
+        return Ended(status, reason)

@@ -1,0 +1,165 @@
+"""A Python that has loaded what notebooks need, and forks a process into a sandbox for each of them.
+
+Starting Python with NumPy, SciPy and IPython takes most of a second of a processor; forking takes a few milliseconds.
+It is a program of its own, beside the grader: no file, variable or object of the grader is in its memory, and so none
+is in a notebook's. It runs from a copy of its code and of the students' package, which is mounted in every sandbox.
+
+    grader --"F", sandbox, connection--> fork server --fork--> guard --enters the sandbox, forks--> the notebook
+"""
+
+import ctypes
+import gc
+import os
+import resource
+import shutil
+import signal
+import socket
+import sys
+import tempfile
+from pathlib import Path
+
+from channel import Channel, Closed
+
+CLONE_NEWUSER = 0x10000000
+# Mounts, host name, System V objects, processes, network, control groups; the user's own namespace only if it differs.
+NAMESPACES = 0x00020000 | 0x04000000 | 0x08000000 | 0x20000000 | 0x40000000 | 0x02000000
+PR_SET_PDEATHSIG, PR_SET_DUMPABLE, PR_CAPBSET_DROP = 1, 4, 24
+LAST_CAPABILITY = 63
+
+
+def main():
+    """Serve until the grader goes away; then remove the folder that this file lies in, a copy made for this process."""
+    here = Path(__file__).parent
+    control = socket.socket(fileno=os.dup(0))
+    null = os.open(os.devnull, os.O_RDWR)
+    os.dup2(null, 0)
+    try:
+        executor, rules = _load()
+        signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for the guards
+        gc.collect()
+        gc.freeze()  # what is loaded stays shared with the processes that are forked
+        control.sendall(b"R")
+        while True:
+            command, descriptors, _, _ = socket.recv_fds(control, 1, 2)
+            if not command:
+                return
+            if os.fork() == 0:
+                control.close()
+                _guard(executor, rules, *descriptors)
+            for descriptor in descriptors:
+                os.close(descriptor)
+    finally:
+        shutil.rmtree(here, ignore_errors=True)
+
+
+def _load():
+    """Import what notebooks use, and set IPython up, with a home folder that is gone again before anybody sees it."""
+    home = tempfile.mkdtemp(prefix="notebook-")
+    os.environ["HOME"] = home
+    try:
+        import matplotlib.backends.backend_agg
+        import matplotlib.pyplot
+        import numpy.random
+        import scipy.spatial.transform  # noqa: F401
+        from executor import Executor
+
+        rules = None
+        if sys.platform == "linux":
+            from seccomp import notebook_filter
+
+            rules = notebook_filter()
+        return Executor(), rules
+    finally:
+        shutil.rmtree(home)
+        os.environ["HOME"] = "/tmp"
+        for module in ("channel", "executor", "forkserver", "seccomp"):
+            sys.modules.pop(module, None)  # a student's helper may have that name
+        sys.path.remove(str(Path(__file__).parent))
+
+
+def _guard(executor, rules, connection, sandbox=None):
+    """Enter the sandbox, start the notebook's process there, tell the grader who it is, and wait for its end."""
+    libc = ctypes.CDLL(None, use_errno=True)
+    _die_with_parent(libc)
+    signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+    grader = socket.socket(fileno=connection)
+    try:
+        if sandbox is not None:
+            _enter(libc, sandbox)
+        child = os.fork()
+    except OSError as error:
+        grader.sendall(f"E{error}".encode())
+        os._exit(1)
+    if child == 0:
+        _notebook(libc, executor, rules, grader)
+    handle = [os.pidfd_open(child)] if hasattr(os, "pidfd_open") else []
+    socket.send_fds(grader, [f"P{child:>20}".encode()], handle)
+    grader.close()
+    os.closerange(3, os.sysconf("SC_OPEN_MAX"))
+    os.waitpid(child, 0)
+    os._exit(0)
+
+
+def _enter(libc, sandbox):
+    """Make the namespaces of the sandbox's first process those of this one (for processes: of its children)."""
+    flags = NAMESPACES if os.getuid() == 0 else NAMESPACES | CLONE_NEWUSER
+    if libc.setns(sandbox, flags) != 0:
+        number = ctypes.get_errno()
+        raise OSError(number, f"entering the sandbox: {os.strerror(number)}")
+    os.close(sandbox)
+
+
+def _die_with_parent(libc):
+    if sys.platform == "linux":
+        libc.prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+
+
+def _notebook(libc, executor, rules, connection):
+    """The life of a notebook's process: answer requests until the grader hangs up."""
+    _die_with_parent(libc)
+    os.setsid()
+    os.closerange(3, connection.fileno())
+    os.closerange(connection.fileno() + 1, os.sysconf("SC_OPEN_MAX"))
+    grader = Channel(connection)
+    try:
+        settings = grader.receive()
+        for name, amount in settings["limits"].items():
+            resource.setrlimit(getattr(resource, name), (amount, amount))
+        if settings["isolated"]:
+            _become_nobody(libc, settings["number"])
+            rules.load()
+        os.environ.update(settings["environment"])
+        os.chdir(settings["folder"])
+        sys.path.insert(0, settings["folder"])
+        executor.start(settings["files"])
+        grader.send({"ready": True})
+        actions = {"run_cell": executor.run_cell, "call": executor.call}
+        while True:
+            request = grader.receive()
+            reply = actions[request["action"]](*request["arguments"])
+            grader.send({"nonce": request["nonce"], **reply})
+    except Closed:
+        os._exit(0)
+    finally:
+        os._exit(1)  # whatever was raised: this process goes no other way
+
+
+class _Capabilities(ctypes.Structure):
+    """The two structures of capset(2): version and process; then effective, permitted and inheritable, twice."""
+
+    _fields_ = [("version", ctypes.c_uint32), ("process", ctypes.c_int)]
+    VERSION_3 = 0x20080522
+
+
+def _become_nobody(libc, number):
+    """Give up root, or what entering one's own user namespace has given: no user, no group, no capability."""
+    for capability in range(LAST_CAPABILITY + 1):
+        libc.prctl(PR_CAPBSET_DROP, capability, 0, 0, 0)  # fails for numbers that this kernel does not have
+    if os.getuid() == 0:
+        os.setgroups([])
+        os.setresgid(number, number, number)
+        os.setresuid(number, number, number)
+    header, none = _Capabilities(_Capabilities.VERSION_3, 0), (ctypes.c_uint32 * 6)()
+    if libc.capset(ctypes.byref(header), ctypes.byref(none)) != 0:
+        raise OSError(ctypes.get_errno(), "capabilities could not be dropped")
+    libc.prctl(PR_SET_DUMPABLE, 1, 0, 0, 0)  # its own /proc/self is readable again, as in any process

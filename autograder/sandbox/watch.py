@@ -1,0 +1,76 @@
+"""What a sandbox uses, read from outside through /proc, where nothing that runs inside can change it."""
+
+import os
+from pathlib import Path
+
+from .bubblewrap import WRITABLE
+
+TICK = 1 / os.sysconf("SC_CLK_TCK")  # seconds; the unit of processor time in /proc
+
+
+class Watch:
+    """Of one sandbox: all its processes together, and its files.
+
+    first: the number of the sandbox's first process; notebook: that of the notebook's own process
+    """
+
+    def __init__(self, first, notebook, limits):
+        self.root, self.notebook, self.limits = Path(f"/proc/{first}/root"), Path(f"/proc/{notebook}"), limits
+
+    def excess(self):
+        """Which limit of the whole sandbox is passed, in words, or None."""
+        memory = processor = 0
+        for process in self._processes():
+            memory += _memory(process)
+            processor += _processor(process)
+        if memory > self.limits.memory:
+            return f"more than {self.limits.memory / 1e9:g} GB of memory"
+        if processor > self.limits.cpu:
+            return f"more than {self.limits.cpu:g} s of processor time"
+        if self._files() > self.limits.files:
+            return f"more than {self.limits.files} files"
+        return None
+
+    def waited(self):
+        """Seconds in which the notebook's process could have run, but others had the processor."""
+        try:
+            return int((self.notebook / "schedstat").read_text().split()[1]) * 1e-9
+        except (OSError, ValueError, IndexError):
+            return 0.0  # it has ended, or this kernel does not count
+
+    def _processes(self):
+        try:
+            return [path for path in (self.root / "proc").iterdir() if path.name.isdigit()]
+        except OSError:
+            return []  # it has ended
+
+    def _files(self):
+        try:
+            counts = [os.statvfs(self.root / folder.relative_to("/")) for folder in WRITABLE]
+        except OSError:
+            return 0
+        return sum(count.f_files - count.f_ffree for count in counts)
+
+
+def _memory(process):
+    """Bytes that a process holds; those that it shares with others are shared out between them."""
+    try:
+        for line in (process / "smaps_rollup").read_text().splitlines():
+            if line.startswith("Pss:"):
+                return int(line.split()[1]) * 1024
+    except OSError:
+        try:  # it hides itself; then what it shares is left out
+            _, resident, shared, *_ = map(int, (process / "statm").read_text().split())
+            return (resident - shared) * os.sysconf("SC_PAGE_SIZE")
+        except OSError:
+            pass
+    return 0  # it has ended
+
+
+def _processor(process):
+    """Seconds of processor time, those of its ended children included."""
+    try:
+        fields = (process / "stat").read_text().rpartition(")")[2].split()
+    except OSError:
+        return 0.0
+    return sum(map(int, fields[11:15])) * TICK
