@@ -4,7 +4,7 @@ Starting Python with NumPy, SciPy and IPython takes most of a second of a proces
 It is a program of its own, beside the grader: no file, variable or object of the grader is in its memory, and so none
 is in a notebook's. It runs from a copy of its code and of the students' package, which is mounted in every sandbox.
 
-    grader --"F", sandbox, connection--> fork server --fork--> guard --enters the sandbox, forks--> the notebook
+    grader --connection, sandbox--> fork server --fork, enter the sandbox--> the notebook's process
 """
 
 import ctypes
@@ -20,9 +20,8 @@ from pathlib import Path
 
 from channel import Channel, Closed
 
-CLONE_NEWUSER = 0x10000000
-# Mounts, host name, System V objects, processes, network, control groups; the user's own namespace only if it differs.
-NAMESPACES = 0x00020000 | 0x04000000 | 0x08000000 | 0x20000000 | 0x40000000 | 0x02000000
+CLONE_NEWUSER, CLONE_NEWPID = 0x10000000, 0x20000000
+NAMESPACES = 0x00020000 | 0x04000000 | 0x08000000 | 0x40000000 | 0x02000000  # mounts, host name, IPC, network, cgroups
 PR_SET_PDEATHSIG, PR_SET_DUMPABLE, PR_CAPBSET_DROP = 1, 4, 24
 LAST_CAPABILITY = 63
 
@@ -33,6 +32,7 @@ def main():
     control = socket.socket(fileno=os.dup(0))
     null = os.open(os.devnull, os.O_RDWR)
     os.dup2(null, 0)
+    libc = ctypes.CDLL(None, use_errno=True)
     try:
         executor, rules = _load()
         signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for the guards
@@ -43,9 +43,10 @@ def main():
             command, descriptors, _, _ = socket.recv_fds(control, 1, 2)
             if not command:
                 return
-            if os.fork() == 0:
-                control.close()
-                _guard(executor, rules, *descriptors)
+            if len(descriptors) == 1 or os.getuid() == 0:
+                _start(libc, executor, rules, *descriptors)
+            elif os.fork() == 0:  # once in a sandbox's user namespace, a process cannot leave it for the next one's
+                _guard(libc, executor, rules, *descriptors)
             for descriptor in descriptors:
                 os.close(descriptor)
     finally:
@@ -77,36 +78,51 @@ def _load():
         sys.path.remove(str(Path(__file__).parent))
 
 
-def _guard(executor, rules, connection, sandbox=None):
-    """Enter the sandbox, start the notebook's process there, tell the grader who it is, and wait for its end."""
-    libc = ctypes.CDLL(None, use_errno=True)
+def _guard(libc, executor, rules, connection, sandbox):
+    """Enter the user namespace, start the notebook's process from there, and wait for its end."""
     _die_with_parent(libc)
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
-    grader = socket.socket(fileno=connection)
+    try:
+        _enter(libc, sandbox, CLONE_NEWUSER)
+        _start(libc, executor, rules, connection, sandbox)
+        os.closerange(0, os.sysconf("SC_OPEN_MAX"))
+        os.wait()
+    finally:
+        os._exit(0)
+
+
+def _start(libc, executor, rules, connection, sandbox=None):
+    """Fork the notebook's process, into the sandbox if there is one, and tell the grader which it is."""
+    grader = socket.socket(fileno=os.dup(connection))
     try:
         if sandbox is not None:
-            _enter(libc, sandbox)
+            own = os.open("/proc/self/ns/pid", os.O_RDONLY | os.O_CLOEXEC)
+            _enter(libc, sandbox, CLONE_NEWPID)  # holds for the children of this process alone
         child = os.fork()
+        if child == 0:
+            try:
+                if sandbox is not None:
+                    _enter(libc, sandbox, NAMESPACES)
+                _notebook(libc, executor, rules, grader)
+            finally:
+                os._exit(1)  # whatever was raised: this process goes no other way
+        if sandbox is not None:
+            _enter(libc, own, CLONE_NEWPID)
+            os.close(own)
+        handle = [os.pidfd_open(child)] if hasattr(os, "pidfd_open") else []
+        socket.send_fds(grader, [f"P{child:>20}".encode()], handle)
+        for descriptor in handle:
+            os.close(descriptor)
     except OSError as error:
         grader.sendall(f"E{error}".encode())
-        os._exit(1)
-    if child == 0:
-        _notebook(libc, executor, rules, grader)
-    handle = [os.pidfd_open(child)] if hasattr(os, "pidfd_open") else []
-    socket.send_fds(grader, [f"P{child:>20}".encode()], handle)
-    grader.close()
-    os.closerange(3, os.sysconf("SC_OPEN_MAX"))
-    os.waitpid(child, 0)
-    os._exit(0)
+    finally:
+        grader.close()
 
 
-def _enter(libc, sandbox):
-    """Make the namespaces of the sandbox's first process those of this one (for processes: of its children)."""
-    flags = NAMESPACES if os.getuid() == 0 else NAMESPACES | CLONE_NEWUSER
-    if libc.setns(sandbox, flags) != 0:
+def _enter(libc, sandbox, namespaces):
+    if libc.setns(sandbox, namespaces) != 0:
         number = ctypes.get_errno()
         raise OSError(number, f"entering the sandbox: {os.strerror(number)}")
-    os.close(sandbox)
 
 
 def _die_with_parent(libc):
@@ -117,6 +133,7 @@ def _die_with_parent(libc):
 def _notebook(libc, executor, rules, connection):
     """The life of a notebook's process: answer requests until the grader hangs up."""
     _die_with_parent(libc)
+    signal.signal(signal.SIGCHLD, signal.SIG_DFL)
     os.setsid()
     os.closerange(3, connection.fileno())
     os.closerange(connection.fileno() + 1, os.sysconf("SC_OPEN_MAX"))
@@ -140,8 +157,6 @@ def _notebook(libc, executor, rules, connection):
             grader.send({"nonce": request["nonce"], **reply})
     except Closed:
         os._exit(0)
-    finally:
-        os._exit(1)  # whatever was raised: this process goes no other way
 
 
 class _Capabilities(ctypes.Structure):
