@@ -13,7 +13,6 @@ def check_files(course, paths, seed=None, isolated=True):
 
     Python files beside the first notebook, which it may import, come along; the students' package is the course's own.
     """
-    against = assignment(course, new_seed() if seed is None else seed, isolated=isolated)
     found, refused, mended, fine = [], [], [], {}
     for path in paths:
         if not path.is_file():
@@ -27,6 +26,8 @@ def check_files(course, paths, seed=None, isolated=True):
             fine[path.stem] = path
     if not fine:
         return found, refused, mended
+    seed = new_seed() if seed is None else seed
+    against = assignment(course, seed, isolated=isolated, notebooks=fine)
     folder = next(iter(fine.values())).parent
     submission = Submission("", {path.name: path.read_bytes() for path in sorted(folder.glob("*.py"))})
     with against.sandbox(submission) as sandbox:

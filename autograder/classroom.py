@@ -1,21 +1,25 @@
-"""Many submissions at once: a pool of processes grades, one writer records, what is unchanged is left alone.
+"""Many submissions at once: workers grade, one writer records, what is unchanged is left alone.
 
 Nothing that one student hands in may stop the others: whatever goes wrong with a submission is said, and the rest goes on.
 """
 
-from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, wait
 from concurrent.futures.process import BrokenProcessPool
 
-from .grading import grade_submission, recorded
+from .grading import recorded
 from .submission import collect
+from .workers import Processes
 
-AHEAD = 2  # submissions for each worker that are read in advance
 
+def grade_class(course, students, assignment, writer, jobs, force=False, cluster=None):
+    """Grade and record; yields (student, Graded or None when unchanged, what went wrong or None) as they are done.
 
-def grade_class(course, students, assignment, writer, jobs, force=False):
-    """Grade and record; yields (student, Graded or None when unchanged, what went wrong or None) as they are done."""
+    cluster: the workers.Cluster to use instead of processes of this machine, as many as `jobs`
+    """
     known = writer.students()
-    pool, running = _pool(assignment, jobs), {}
+    if cluster:
+        cluster.load(assignment)
+    pool, running = cluster or Processes(assignment, jobs), {}
     try:
         for student in [*students, None]:  # None: all are on their way
             if student is not None:
@@ -28,29 +32,29 @@ def grade_class(course, students, assignment, writer, jobs, force=False):
                 if unchanged:
                     yield student, None, None
                     continue
-                running[pool.submit(_grade, submission)] = submission
-            while running and (student is None or len(running) >= AHEAD * jobs):
+                running[pool.submit(submission)] = submission
+            while running and (student is None or len(running) >= pool.ahead):
                 done = wait(running, return_when=FIRST_COMPLETED).done
                 if any(isinstance(future.exception(), BrokenProcessPool) for future in done):
                     # One of these brought a worker down: graded one by one, only that one fails.
-                    pool.shutdown()
+                    pool.__exit__()
                     suspects, running = list(running.values()), {}
                     for submission in suspects:
-                        with _pool(assignment, 1) as alone:
-                            future = alone.submit(_grade, submission)
+                        with Processes(assignment, 1) as alone:
+                            future = alone.submit(submission)
                             wait([future])
                         yield _record(writer, submission.student, future)
-                    pool = _pool(assignment, jobs)
+                    pool = Processes(assignment, jobs)
                     continue
                 for future in done:
                     yield _record(writer, running.pop(future).student, future)
     finally:
-        pool.shutdown(cancel_futures=True)
+        pool.__exit__()
 
 
 def _record(writer, student, future):
     error = future.exception()
-    if isinstance(error, BrokenProcessPool):
+    if type(error).__name__ in ("BrokenProcessPool", "KilledWorker"):  # of the pool, of Dask
         return student, None, "its grading process ended all of a sudden; is there enough memory?"
     if error is not None:
         return student, None, _words(error)
@@ -73,26 +77,3 @@ def _unchanged(course, submission, assignment):
         record.get("submission") == submission.digest and record.get("specification") == assignment.digest
         for record in records.values()
     )
-
-
-_assignment = None  # in a worker process: what it grades against, sent once; None once it was told to stop
-
-
-def _pool(assignment, jobs):
-    return ProcessPoolExecutor(jobs, initializer=_start, initargs=(assignment,))
-
-
-def _start(assignment):
-    global _assignment
-    _assignment = assignment
-
-
-def _grade(submission):
-    global _assignment
-    if _assignment is None:
-        raise KeyboardInterrupt
-    try:
-        return grade_submission(submission, _assignment)
-    except KeyboardInterrupt:
-        _assignment = None  # Ctrl-C: this worker's other submissions wait for the next run
-        raise

@@ -6,6 +6,8 @@ import os
 import subprocess
 import sys
 import zipfile
+from collections import Counter
+from contextlib import nullcontext
 from pathlib import Path
 
 from rich.console import Console
@@ -67,6 +69,7 @@ def _parser():
     sub.add_argument(
         "--jobs", type=_positive, default=os.cpu_count(), help="submissions at a time (default: all cores)"
     )
+    sub.add_argument("--scheduler", metavar="ADDRESS", help="grade on the workers of a Dask scheduler, such as tcp://host:8786")
     sub.add_argument("--no-feedback", action="store_true", help="leave out nbgrader's feedback pages")
     sandbox_options(sub)
     add("report", report, "write the class report from what is graded")
@@ -141,8 +144,13 @@ def package(options):
 
 
 def grade(options):
+    from .sandbox import ForkServer
+
     here = course()
-    protected = _protection(here, options.unsafe_no_sandbox)
+    ForkServer.serving(here.package)  # loads while the rest is loaded here
+    from . import gradebook  # noqa: F401
+    from .workers import Cluster
+
     students = here.students()
     chosen = list(dict.fromkeys(options.students)) or students
     unknown = [student for student in chosen if student not in students]
@@ -152,32 +160,35 @@ def grade(options):
         errors.print(f"{student}: no submission in submitted/{student}/{ASSIGNMENT}.{meant}", markup=False)
     for student in here.astray() if not options.students else ():
         errors.print(f"{student}: not graded: its files have to be in submitted/{student}/{ASSIGNMENT}/.", markup=False)
-    failed = _grade(
-        here,
-        [student for student in chosen if student in students],
-        protected,
-        seed=options.seed,
-        jobs=options.jobs,
-        force=options.force or options.seed is not None,
-        with_feedback=not options.no_feedback,
-    )
+    with Cluster(options.scheduler) if options.scheduler else nullcontext() as cluster:
+        failed = _grade(
+            here,
+            [student for student in chosen if student in students],
+            _protection(here, options.unsafe_no_sandbox, cluster),
+            seed=options.seed,
+            jobs=options.jobs,
+            force=options.force or options.seed is not None,
+            with_feedback=not options.no_feedback,
+            cluster=cluster,
+        )
     return 1 if unknown or failed else 0
 
 
-def _protection(here, unsafe):
+def _protection(here, unsafe, cluster=None):
     """Whether sandboxes are used; refuses when they cannot be and nobody asked to go without."""
     from . import sandbox
 
     if unsafe:
         errors.print(UNPROTECTED)
         return False
-    problem = sandbox.refusal(here.root)
+    problem = cluster.ask(sandbox.refusal, here.root) if cluster else sandbox.refusal(here.root)
     if problem:
-        raise CourseError(f"{problem}\nNothing was graded. To grade without protection: --unsafe-no-sandbox")
+        where = "On a worker of the cluster: " if cluster else ""
+        raise CourseError(f"{where}{problem}\nNothing was graded. To grade without protection: --unsafe-no-sandbox")
     return True
 
 
-def _grade(here, students, protected, seed=None, jobs=os.cpu_count(), force=False, with_feedback=True):
+def _grade(here, students, protected, seed=None, jobs=os.cpu_count(), force=False, with_feedback=True, cluster=None):
     """Grade, record, write feedback and report; returns the students who could not be graded."""
     from . import report
     from .classroom import grade_class
@@ -185,20 +196,24 @@ def _grade(here, students, protected, seed=None, jobs=os.cpu_count(), force=Fals
     from .grading import assignment, new_seed
 
     seed = new_seed() if seed is None else seed
-    failed, fresh = [], []
-    with Writer(here) as writer:
+    failed, fresh, counts = [], [], Counter()
+    with here.one_grader_at_a_time(_busy), Writer(here) as writer:
         against = assignment(here, seed, isolated=protected)
         with _progress() as progress:
-            bar = progress.add_task("grading", total=len(students))
-            for student, graded, problem in grade_class(here, students, against, writer, jobs, force):
-                progress.advance(bar)
+            bar = progress.add_task("grading", total=len(students), counts="")
+            for student, graded, problem in grade_class(here, students, against, writer, jobs, force, cluster):
                 if problem:
                     failed.append(student)
                     progress.console.print(f"{student}: not graded: {problem}", markup=False)
                 if graded:
                     fresh.append(student)
+                    counts.update(row.status for row in graded.rows)
                     for line in graded.problems:
                         progress.console.print(f"{student}: {line}", markup=False)
+                said = f"{len(fresh)} graded, {progress.tasks[bar].completed + 1 - len(fresh) - len(failed):g} unchanged"
+                said += f", {len(failed)} failed" if failed else ""
+                said += "".join(f", {count} {status}" for status, count in counts.items() if status != "graded")
+                progress.update(bar, advance=1, counts=said)
         if with_feedback:
             _write_feedback(here, [student for student in students if student not in failed], jobs)
         found = report.write(here, _recorded(here, writer))
@@ -224,23 +239,29 @@ def _recorded(here, writer):
 def _write_feedback(here, students, jobs):
     from . import feedback
 
-    def lacks(student):
-        return any(here.autograded(student).glob("*.ipynb")) and not any(here.feedback(student).glob("*.html"))
-
-    wanted = [student for student in students if lacks(student)]
+    wanted = [student for student in students if not feedback.is_complete(here, student)]
     with _progress() as progress:
-        bar = progress.add_task("feedback", total=len(wanted))
+        bar = progress.add_task("feedback", total=len(wanted), counts="")
         for student, problem in feedback.generate(here, wanted, jobs):
             progress.advance(bar)
             if problem:
                 progress.console.print(f"{student}: no feedback: {problem}", markup=False)
 
 
-def _progress():
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+def _busy():
+    console.print("Another grading run of this course is going on; waiting for its end …")
 
-    columns = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
-    return Progress(*columns, console=console)
+
+def _progress():
+    """A bar with: how many are done, how many a minute, the time left, and what came of them."""
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, ProgressColumn, TextColumn, TimeRemainingColumn
+
+    class Rate(ProgressColumn):
+        def render(self, task):
+            return Text(f"{task.speed * 60:.0f}/min" if task.speed else "")
+
+    columns = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), Rate(), TimeRemainingColumn()
+    return Progress(*columns, TextColumn("{task.fields[counts]}"), console=console)
 
 
 def _add_row(table, *cells):
@@ -311,9 +332,13 @@ def demo(options):
 
 
 def check(options):
-    from .check import check_files
+    from .sandbox import ForkServer
 
     here = course()
+    ForkServer.serving(here.package)  # loads while the rest is loaded here
+
+    from .check import check_files
+
     protected = _protection(here, options.unsafe_no_sandbox)
     found, refused, mended = check_files(here, options.notebooks, options.seed, protected)
     for line in refused + mended:

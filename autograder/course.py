@@ -1,15 +1,24 @@
 """Where things lie in a course, and what was released: the facts that every command starts from."""
 
 import hashlib
+import os
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-import nbformat
-
-from .exercises import EXERCISES
-
 ASSIGNMENT = "transforms"
+
+
+def replace(path, text):
+    """Write a file in one step: whoever reads it finds the old text or the new one, and never half of it."""
+    fresh = path.with_name(f".{path.name}.new")
+    try:
+        fresh.write_text(text, encoding="utf-8")
+        os.replace(fresh, path)
+    except OSError:
+        fresh.unlink(missing_ok=True)
+        raise
 
 
 class CourseError(Exception):
@@ -82,6 +91,22 @@ class Course:
         folders = (self.root / "submitted").iterdir()
         return [path.name for path in folders if path.is_dir() and not path.name.startswith(".")]
 
+    @contextmanager
+    def one_grader_at_a_time(self, busy):
+        """Wait while another process grades this course, having called `busy` to say so; a killed one does not count."""
+        import fcntl  # not on Windows, where nobody else gets this far either
+
+        folder = os.open(self.root / "submitted", os.O_RDONLY)
+        try:
+            try:
+                fcntl.flock(folder, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                busy()
+                fcntl.flock(folder, fcntl.LOCK_EX)
+            yield
+        finally:
+            os.close(folder)
+
     @cached_property
     def notebooks(self):
         """The released notebooks, {name: Released}, in order."""
@@ -103,6 +128,8 @@ class Released:
 
     @cached_property
     def notebook(self):
+        import nbformat  # here and below: a command that only starts another program need not wait for these
+
         return nbformat.reads(self.text, as_version=4)
 
     @cached_property
@@ -113,6 +140,8 @@ class Released:
     @cached_property
     def points(self):
         """The exercises in this notebook, {name: points}, in order."""
+        from .exercises import EXERCISES
+
         return {
             name: float(cell.metadata.nbgrader.points)
             for name, cell in self.cells.items()

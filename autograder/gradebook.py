@@ -8,21 +8,27 @@ import copy
 import csv
 import io
 import shutil
+import sqlite3
 import time
-from pathlib import Path
 
 import nbformat
-from nbgrader import utils
-from nbgrader.api import Gradebook, MissingEntry
+from nbgrader.api import BaseCell, Comment, Grade, Gradebook, MissingEntry, SubmittedNotebook
 from nbgrader.coursedir import CourseDirectory
 from nbgrader.preprocessors import AssignLatePenalties, SaveCells
+from sqlalchemy import Engine, event, select, update
 from sqlalchemy.exc import DatabaseError, OperationalError
 
 from .api import settings
-from .course import ASSIGNMENT, CourseError
-from .submission import timestamp
+from .course import ASSIGNMENT, CourseError, replace
 
 PATIENCE = 60.0  # seconds to wait for a database that somebody else has locked
+
+
+@event.listens_for(Engine, "connect")
+def _wait_for_locks(connection, _):
+    """Have SQLite wait when somebody else, such as the formgrader, writes; it gives up after 5 seconds by itself."""
+    if isinstance(connection, sqlite3.Connection):
+        connection.execute(f"PRAGMA busy_timeout = {int(PATIENCE * 1000)}")
 
 
 class Writer:
@@ -45,6 +51,8 @@ class Writer:
             self.gradebook.find_assignment(ASSIGNMENT)
         except MissingEntry:
             self._register(released)
+        cells = self.gradebook.db.execute(select(BaseCell.id, BaseCell.name)).all()
+        self.cells = {identifier: name for identifier, name in cells}
         return self
 
     def __exit__(self, *_):
@@ -56,7 +64,6 @@ class Writer:
 
     def record(self, graded):
         """Write one Graded: first the marks, then the files, whose records say that all is done."""
-        fresh = self._prepare_files(graded)
         start = time.monotonic()
         while True:
             try:
@@ -67,10 +74,8 @@ class Writer:
                 if "locked" not in str(error) or time.monotonic() - start > PATIENCE:
                     raise
                 time.sleep(0.5)
-        folder = self.course.autograded(graded.student)
-        for stale in (folder, self.course.feedback(graded.student)):  # feedback is made anew, or would be out of date
-            shutil.rmtree(stale, ignore_errors=True)
-        fresh.rename(folder)
+        shutil.rmtree(self.course.feedback(graded.student), ignore_errors=True)  # made anew, or it would be out of date
+        self._write_files(graded)
 
     def totals(self):
         """CSV text: each student's points, automatic and manual, as the gradebook has them."""
@@ -91,46 +96,46 @@ class Writer:
         except MissingEntry:
             return
 
-    def _prepare_files(self, graded):
+    def _write_files(self, graded):
+        """Each file is replaced in one step, so that nobody ever reads half of one."""
         folder = self.course.autograded(graded.student)
-        fresh = folder.with_name(f".{folder.name}.new")
-        shutil.rmtree(fresh, ignore_errors=True)
-        fresh.mkdir(parents=True)
-        for name, text in graded.notebooks.items():
-            Path(fresh, f"{name}.ipynb").write_text(text, encoding="utf-8")
-        when, _ = timestamp(self.course, graded.student)
-        if when:
-            Path(fresh, "timestamp.txt").write_text(when, encoding="utf-8")
-        return fresh
+        folder.mkdir(parents=True, exist_ok=True)
+        files = {f"{name}.ipynb": text for name, text in graded.notebooks.items()}
+        if graded.timestamp:
+            files["timestamp.txt"] = graded.timestamp
+        for stale in {path.name for path in folder.iterdir()} - set(files):
+            path = folder / stale
+            shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
+        for name, text in files.items():
+            replace(folder / name, text)
 
     def _write_marks(self, graded):
         book = self.gradebook
         book.update_or_create_student(graded.student)
-        when, _ = timestamp(self.course, graded.student)
-        given = {"timestamp": when} if when else {}
+        given = {"timestamp": graded.timestamp} if graded.timestamp else {}
         submission = book.update_or_create_submission(ASSIGNMENT, graded.student, **given)
-        for notebook in submission.notebooks:
-            text = graded.notebooks.get(notebook.name)
-            if text is None:
-                for grade in notebook.grades:
-                    grade.auto_score, grade.needs_manual_grade = 0, False
-                continue
-            cells = {
-                cell.metadata.nbgrader.grade_id: cell
-                for cell in nbformat.reads(text, as_version=4).cells
-                if "nbgrader" in cell.metadata
-            }
-            for grade in notebook.grades:
-                grade.auto_score, _ = utils.determine_grade(cells[grade.name])
-                grade.needs_manual_grade = grade.manual_score is not None or grade.auto_score is None
-            for comment in notebook.comments:
-                cell = cells[comment.name]
-                unchanged = cell.metadata.nbgrader.get("checksum") == utils.compute_checksum(cell)
-                comment.auto_comment = "No response." if unchanged else None
-            notebook.late_submission_penalty = None
+        notebooks = {notebook.id: graded.marks.get(notebook.name) for notebook in submission.notebooks}
+        grades, comments = [], []
+        for identifier, notebook, cell, manual_score in self._rows(Grade, Grade.manual_score, notebooks):
+            marks = notebooks[notebook]
+            score = marks.scores[self.cells[cell]] if marks else 0
+            waiting = marks is not None and (manual_score is not None or score is None)
+            grades.append({"id": identifier, "auto_score": score, "needs_manual_grade": waiting})
+        for identifier, notebook, cell, _ in self._rows(Comment, Comment.auto_comment, notebooks):
+            if notebooks[notebook]:
+                comments.append({"id": identifier, "auto_comment": notebooks[notebook].comments[self.cells[cell]]})
+        penalties = [{"id": identifier, "late_submission_penalty": None} for identifier in notebooks]
+        for table, rows in ((Grade, grades), (Comment, comments), (SubmittedNotebook, penalties)):
+            if rows:
+                book.db.execute(update(table), rows)
         book.db.commit()
         if submission.total_seconds_late > 0:
             self._penalize(graded)
+
+    def _rows(self, table, column, notebooks):
+        """(id, notebook, cell, column) of what a submission has in a table; one query instead of one for each cell."""
+        columns = select(table.id, table.notebook_id, table.cell_id, column)
+        return self.gradebook.db.execute(columns.where(table.notebook_id.in_(notebooks))).all()
 
     def _register(self, released):
         """A gradebook that does not know the assignment (a fresh clone) learns it from the released notebooks.

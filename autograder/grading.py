@@ -46,12 +46,15 @@ class Graded:
     student: str
     rows: list = field(default_factory=list)
     notebooks: dict = field(default_factory=dict)  # {notebook name: JSON text}; none for a missing file
+    marks: dict = field(default_factory=dict)  # {notebook name: Marks}
     problems: list = field(default_factory=list)
+    timestamp: str | None = None  # when the submission was handed in
 
 
-def assignment(course, seed, limits=Limits(), isolated=True):
-    """The Assignment of a course, with the hidden cases drawn from `seed`."""
-    names = [name for released in course.notebooks.values() for name in released.points]
+def assignment(course, seed, limits=Limits(), isolated=True, notebooks=None):
+    """The Assignment of a course, with the hidden cases drawn from `seed` (for all notebooks, or those named)."""
+    wanted = course.notebooks if notebooks is None else notebooks
+    names = [name for notebook in wanted for name in course.notebooks[notebook].points]
     keys = {name: key(EXERCISES[name], seed) for name in names}
     return Assignment(dict(course.notebooks), keys, course.package, seed, specification(course), limits, isolated)
 
@@ -74,7 +77,9 @@ def specification(course):
 
 def grade_submission(submission, assignment):
     """Grade one student's submission: a Graded with a row for every exercise of the assignment."""
-    graded = Graded(submission.student, problems=list(submission.problems))
+    from .marks import marks  # here, because it imports nbgrader, which takes longer than to check one student's files
+
+    graded = Graded(submission.student, problems=list(submission.problems), timestamp=submission.timestamp)
     with assignment.sandbox(submission) as sandbox:
         for name, released in assignment.released.items():
             content = submission.files.get(f"{name}.ipynb")
@@ -84,7 +89,8 @@ def grade_submission(submission, assignment):
             intake = restore(content, released)
             verdicts = grade_notebook(intake, released, assignment, sandbox, submission)
             graded.rows += rows(released, verdicts)
-            graded.notebooks[name] = nbformat.writes(intake.notebook) + "\n"
+            graded.notebooks[name] = nbformat.v4.writes(intake.notebook) + "\n"
+            graded.marks[name] = marks(intake.notebook)
             graded.problems += intake.problems
     return graded
 

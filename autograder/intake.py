@@ -63,7 +63,8 @@ def _parse(content):
     except (UnicodeDecodeError, RecursionError, ValueError) as error:
         raise Unreadable(f"it is not JSON ({_short(error)})") from error
     try:
-        notebook = nbformat.reads(printable(json.dumps(_known_fields(raw), ensure_ascii=False)), as_version=4)
+        text = printable(json.dumps(_known_fields(raw), ensure_ascii=False))
+        notebook = nbformat.convert(nbformat.reader.reads(text), 4)
         for cell in notebook.cells:
             if cell.cell_type == "code":
                 cell.outputs, cell.execution_count = [], None

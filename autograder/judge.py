@@ -117,12 +117,11 @@ def _exercise(cell, released):
 
 
 def _stopped(ended):
-    reason = "took too long" if ended.status == "timeout" else "used too much, or ended its own process"
     return {
         "output_type": "error",
         "ename": "Stopped",
-        "evalue": f"the grader stopped this cell: it {reason}",
-        "traceback": [f"The grader stopped this cell: it {reason}. The cells after it were run without it."],
+        "evalue": f"the grader stopped this cell: {ended.reason}",
+        "traceback": [f"The grader stopped this cell: {ended.reason}. The cells after it were run without it."],
     }
 
 
@@ -132,7 +131,9 @@ def _show(cell, verdict, points):
     cell.execution_count = None
     opinion = {"text/plain": panel.text(verdict, numbers=False), "text/html": panel.html(verdict, numbers=False)}
     result = {"text/plain": repr(earned), "text/html": f"<div>{earned:g} of {points:g} points</div>"}
-    cell.outputs = [
-        nbformat.v4.new_output("display_data", opinion),
-        nbformat.v4.new_output("execute_result", result),
-    ]
+    cell.outputs = nbformat.from_dict(
+        [
+            {"output_type": "display_data", "data": opinion, "metadata": {}},
+            {"output_type": "execute_result", "data": result, "metadata": {}, "execution_count": None},
+        ]
+    )

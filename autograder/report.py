@@ -5,7 +5,6 @@ Everything is read back from the autograded notebooks, so it is the same however
 
 import csv
 import io
-import os
 from collections import Counter
 from dataclasses import astuple, fields
 from datetime import UTC, datetime
@@ -13,7 +12,7 @@ from datetime import UTC, datetime
 import jinja2
 from transform_lab.diagnosis import GENERAL
 
-from .course import ASSIGNMENT
+from .course import ASSIGNMENT, replace
 from .exercises import EXERCISES
 from .grading import missing, recorded
 from .judge import Row
@@ -45,7 +44,7 @@ def write(course, students):
     writer = csv.writer(table, lineterminator="\n")
     writer.writerow(COLUMNS)
     writer.writerows((student, *astuple(row)) for student, rows in found.items() for row in rows)
-    _replace(course.reports / "verdicts.csv", table.getvalue())
+    replace(course.reports / "verdicts.csv", table.getvalue())
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("autograder"), autoescape=True, trim_blocks=True, lstrip_blocks=True
     )
@@ -57,7 +56,7 @@ def write(course, students):
         misunderstood=misunderstood(found),
         look=look(found, problems),
     )
-    _replace(course.reports / "index.html", page)
+    replace(course.reports / "index.html", page)
     return found
 
 
@@ -100,9 +99,3 @@ def look(found, problems):
 
 def _total(rows):
     return sum(row.score for row in rows), sum(row.max_score for row in rows)
-
-
-def _replace(path, text):
-    fresh = path.with_name(f".{path.name}.new")
-    fresh.write_text(text, encoding="utf-8")
-    os.replace(fresh, path)

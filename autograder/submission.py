@@ -24,6 +24,7 @@ class Submission:
     student: str
     files: dict
     problems: tuple = ()
+    timestamp: str | None = None  # when it was handed in, as text for nbgrader
 
     @property
     def helpers(self):
@@ -66,13 +67,13 @@ def collect(course, student):
             problems.append(f"{name}: {problem}.")
         else:
             files[name] = content
-    _, problem = timestamp(course, student)
-    return Submission(student, files, tuple(problems + [problem] if problem else problems))
+    timestamp, problem = _timestamp(folder)
+    return Submission(student, files, tuple(problems + [problem] if problem else problems), timestamp)
 
 
-def timestamp(course, student):
+def _timestamp(folder):
     """(when the work was handed in, as text for nbgrader, or None; what is wrong with timestamp.txt or None)"""
-    content, _ = read(course.submitted(student) / "timestamp.txt")
+    content, _ = read(folder / "timestamp.txt")
     text = (content or b"").decode("utf-8", "replace").strip()
     try:
         return (text, None) if text and dateutil.parser.parse(text) else (None, None)

@@ -244,11 +244,17 @@ class Executor:
         return reply
 
     async def _run(self, source):
-        cell = self.shell.transform_cell(source)
-        if self.shell.should_run_async(source, transformed_cell=cell):
-            await self.shell.run_cell_async(source, store_history=True, transformed_cell=cell)
-        else:
-            self.shell.run_cell(source, store_history=True)
+        """As ipykernel does it."""
+        shell, problem = self.shell, None
+        try:
+            cell = shell.transform_cell(source)
+        except Exception:  # of a transformer that the student has put in: shown as the cell's error
+            cell, problem = source, sys.exc_info()
+        result = await shell.run_cell_async(
+            source, store_history=True, transformed_cell=cell, preprocessing_exc_tuple=problem
+        )
+        shell.events.trigger("post_execute")  # figures are shown here
+        shell.events.trigger("post_run_cell", result)
 
     def _exit(self, *_, **__):
         self.shell.ask_exit()

@@ -11,11 +11,13 @@ import ctypes
 import gc
 import os
 import resource
+import select
 import shutil
 import signal
 import socket
 import sys
 import tempfile
+from contextlib import contextmanager
 from pathlib import Path
 
 from channel import Channel, Closed
@@ -36,10 +38,11 @@ def main():
     try:
         executor, rules = _load()
         signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for the guards
-        gc.collect()
-        gc.freeze()  # what is loaded stays shared with the processes that are forked
-        control.sendall(b"R")
+        ready_for_figures = False
         while True:
+            if not ready_for_figures and not select.select([control], [], [], 0)[0]:
+                _load_figures()  # while nobody waits: half of a start, and not every notebook draws
+                ready_for_figures = True
             command, descriptors, _, _ = socket.recv_fds(control, 1, 2)
             if not command:
                 return
@@ -54,12 +57,8 @@ def main():
 
 
 def _load():
-    """Import what notebooks use, and set IPython up, with a home folder that is gone again before anybody sees it."""
-    home = tempfile.mkdtemp(prefix="notebook-")
-    os.environ["HOME"] = home
-    try:
-        import matplotlib.backends.backend_agg
-        import matplotlib.pyplot
+    """Import what notebooks use, and set IPython up."""
+    with _home():
         import numpy.random
         import scipy.spatial.transform  # noqa: F401
         from executor import Executor
@@ -69,13 +68,31 @@ def _load():
             from seccomp import notebook_filter
 
             rules = notebook_filter()
-        return Executor(), rules
+        executor = Executor()
+    for module in ("channel", "executor", "forkserver", "seccomp"):
+        sys.modules.pop(module, None)  # a student's helper may have that name
+    sys.path.remove(str(Path(__file__).parent))
+    return executor, rules
+
+
+def _load_figures():
+    with _home():
+        import matplotlib.backends.backend_agg
+        import matplotlib.pyplot  # noqa: F401
+
+
+@contextmanager
+def _home():
+    """A home folder for the configuration that libraries write; gone again before a notebook sees it."""
+    home = tempfile.mkdtemp(prefix="notebook-")
+    os.environ["HOME"] = home
+    try:
+        yield
     finally:
         shutil.rmtree(home)
         os.environ["HOME"] = "/tmp"
-        for module in ("channel", "executor", "forkserver", "seccomp"):
-            sys.modules.pop(module, None)  # a student's helper may have that name
-        sys.path.remove(str(Path(__file__).parent))
+        gc.collect()
+        gc.freeze()  # what is loaded stays shared with the processes that are forked
 
 
 def _guard(libc, executor, rules, connection, sandbox):

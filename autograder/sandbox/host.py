@@ -82,25 +82,25 @@ class CellRun:
 
 
 class ForkServer:
-    """The grader's handle on a forkserver.py of its own, which lives as long as the grader's process.
+    """The grader's handle on a forkserver.py, which loads while the grader goes on, and lives as long as the grader.
 
+    Processes that are forked from the grader use it, too: each request carries the socket that its answer comes over.
     package: the folder of the students' package `transform_lab`
     """
 
     current = None
 
     @classmethod
-    def of_this_process(cls, package):
-        """The one that runs, or a new one; a process that was forked from the grader gets its own."""
-        found = cls.current
-        if not found or found.owner != os.getpid() or found.package != package or found.process.poll() is not None:
+    def serving(cls, package):
+        """The one that runs, or a new one."""
+        if not (cls.current and cls.current.package == package and cls.current.alive()):
             cls.current = cls(package)
         return cls.current
 
     def __init__(self, package):
-        self.owner, self.package, self.ready = os.getpid(), package, False
+        self.package = package
         self.code = copy_code(package)
-        self.control, inside = socket.socketpair()
+        self.control, inside = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         start = f"import sys; sys.path.insert(0, {str(self.code)!r}); import forkserver; forkserver.main()"
         self.errors = tempfile.TemporaryFile()  # of a Python that does not start: this machine's, and worth reading
         self.process = subprocess.Popen(
@@ -114,20 +114,18 @@ class ForkServer:
         )
         inside.close()
 
+    def alive(self):
+        try:
+            return self.control.recv(1, socket.MSG_PEEK | socket.MSG_DONTWAIT) != b""
+        except BlockingIOError:
+            return True
+        except OSError:
+            return False
+
     def fork(self, connection, namespaces=None):
         """Start a notebook's process that speaks over `connection` (the far end of a socket), inside `namespaces`."""
-        try:
-            if not self.ready:
-                self.control.settimeout(PATIENCE)
-                self.ready = self.control.recv(1) == b"R"
-            handles = [connection.fileno(), *([namespaces.pidfd] if namespaces else [])]
-            socket.send_fds(self.control, [b"F"], handles)
-        except OSError:
-            self.ready = False
-        if not self.ready:
-            self.process.kill()
-            self.process.wait()
-            raise NotStarted(f"Python did not start for a notebook: {self.said() or 'no answer in time'}")
+        handles = [connection.fileno(), *([namespaces.pidfd] if namespaces else [])]
+        socket.send_fds(self.control, [b"F"], handles)
 
     def said(self):
         """The end of what it wrote: why it failed, or why a notebook's process did before it ran anything."""
@@ -173,7 +171,7 @@ class NotebookProcess:
         connection.settimeout(PATIENCE)
         self.channel = Channel(connection)
         settings = {"files": sandbox.files, "isolated": sandbox.isolated}
-        server = ForkServer.of_this_process(sandbox.package)
+        server = ForkServer.serving(sandbox.package)
         try:
             if sandbox.isolated:
                 self.namespaces = Namespaces(server.code)

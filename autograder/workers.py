@@ -1,0 +1,104 @@
+"""Where submissions are graded: in processes of this machine, or on a Dask cluster. The work is the same pure function.
+
+Both have `submit(submission)`, which gives a concurrent.futures.Future of a Graded, and `ahead`, how many submissions
+to read in advance.
+"""
+
+import multiprocessing
+import os
+import threading
+from concurrent.futures import ProcessPoolExecutor
+
+from .course import CourseError
+from .grading import grade_submission
+
+EACH_AHEAD = 2  # submissions for each worker that are read in advance
+PATIENCE = 10  # seconds for a scheduler to answer
+
+
+class Processes:
+    """A pool of processes on this machine; a context manager."""
+
+    def __init__(self, assignment, jobs):
+        self.pool = ProcessPoolExecutor(jobs, initializer=_start, initargs=(assignment,))
+        self.ahead = EACH_AHEAD * jobs
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.pool.shutdown(cancel_futures=True)
+
+    def submit(self, submission):
+        return self.pool.submit(_grade, submission)
+
+
+class Cluster:
+    """The workers of a Dask scheduler, each in a clone of the course at the same path; a context manager."""
+
+    def __init__(self, address):
+        from distributed import Client
+
+        try:
+            self.client = Client(address, timeout=PATIENCE, set_as_default=False)
+        except (OSError, ValueError) as error:
+            raise CourseError(
+                f"No Dask scheduler answers at {address} ({' '.join(str(error).split())[:150]}). Start one with "
+                f"`dask scheduler`, and workers with `dask worker {address}` in this folder on each machine."
+            ) from None
+        threads = sum(self.client.nthreads().values())
+        if not threads:
+            self.client.close()
+            raise CourseError(
+                f"The Dask scheduler at {address} has no workers. Start some with `dask worker {address}` in this folder."
+            )
+        self.ahead = EACH_AHEAD * threads
+        self.executor = self.client.get_executor(pure=False)
+
+    def load(self, assignment):
+        """Send what submissions are graded against: as a task, so that it is sent again when its worker is lost."""
+        self.assignment = self.client.submit(_itself, assignment, pure=False)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.executor.shutdown(wait=False)
+        self.client.close()
+
+    def submit(self, submission):
+        return self.executor.submit(grade_submission, submission, self.assignment)
+
+    def ask(self, function, *arguments):
+        """What a function answers on one of the workers."""
+        return self.client.submit(function, *arguments, pure=False).result()
+
+
+def _itself(value):
+    return value
+
+
+_assignment = None  # in a process of the pool: what it grades against, sent once; None once it was told to stop
+
+
+def _start(assignment):
+    global _assignment
+    _assignment = assignment
+    end_with_parent()
+
+
+def end_with_parent():
+    """Make this process of a pool end when the grader does, even when the grader is killed."""
+    parent = multiprocessing.parent_process()
+    threading.Thread(target=lambda: (parent.join(), os._exit(1)), daemon=True).start()
+
+
+def _grade(submission):
+    global _assignment
+    if _assignment is None:
+        raise KeyboardInterrupt
+    try:
+        return grade_submission(submission, _assignment)
+    except KeyboardInterrupt:
+        _assignment = None  # Ctrl-C: this worker's other submissions wait for the next run
+        raise
