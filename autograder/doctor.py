@@ -1,9 +1,11 @@
 """What protects grading on this machine and what does not, in plain words."""
 
+import os
 import sys
 
 from . import sandbox
 from .sandbox import Limits
+from .sandbox.bubblewrap import FOLDER
 
 
 def examine(course):
@@ -14,21 +16,23 @@ def examine(course):
         lines.append((False, f"No sandbox: {problem} `grade` refuses to run without --unsafe-no-sandbox."))
         return lines
     lines += [
-        (
-            True,
-            "bubblewrap works: a notebook sees no network, no other process, no file and no variable of yours.",
-        ),
+        (True, "bubblewrap works: a notebook sees no network, no other process, no file and no variable of yours."),
+        (True, f"Notebooks run as nobody in particular{', although you are root' if os.getuid() == 0 else ''}."),
+        (True, "System calls are filtered (seccomp): what no notebook needs of the kernel is refused."),
         (True, "Verdicts are reached outside the notebook's process: no expected value or hidden case is ever in it."),
         (
             True,
-            f"Limits: {limits.call:g} s a call, {limits.cell:g} s a cell, {limits.notebook:g} s a notebook; "
-            f"{limits.memory / 1e9:g} GB a process, {limits.processes} of them.",
+            f"Limits of time: {limits.call:g} s a call, {limits.cell:g} s a cell, {limits.notebook:g} s a notebook, "
+            f"{limits.submission:g} s a submission; {limits.cpu:g} s of processor time a notebook.",
         ),
         (
-            False,
-            "Not filtered: system calls (no seccomp filter yet); a hole in the kernel would be one in the sandbox.",
+            True,
+            f"Limits of a notebook: {limits.memory / 1e9:g} GB of memory, {limits.processes} processes and threads, "
+            f"{limits.files} files of up to {limits.file / 1e6:g} MB in folders of {FOLDER / 1e6:g} MB.",
         ),
     ]
+    if not os.path.exists("/proc/self/schedstat"):
+        lines.append((False, "This kernel does not tell who waits for a processor: a slow neighbour can cost time."))
     if exposed := sandbox.refusal(course.root):
         lines.append((False, exposed))
     released = course.release.is_dir()

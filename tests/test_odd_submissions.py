@@ -10,7 +10,7 @@ import pytest
 from test_commands import run, scores, statuses
 from test_nbgrader import marks, nbgrader
 
-from autograder import classroom
+from autograder import workers
 from autograder.classroom import grade_class
 from autograder.gradebook import Writer
 from autograder.grading import assignment, grade_submission
@@ -136,14 +136,14 @@ def test_marks_that_were_not_written_are_written_next_time(course, hand_in, solv
 def test_a_worker_that_dies_costs_only_its_own_submission(course, hand_in, solved, sandboxed, monkeypatch):
     for student in ("ann", "bad", "cid", "dan"):
         hand_in(course, student, {ONE: solved[ONE]})
-    grade = classroom.grade_submission
+    grade = workers.grade_submission
 
     def killed(submission, against):
         if submission.student == "bad":
             os.kill(os.getpid(), 9)
         return grade(submission, against)
 
-    monkeypatch.setattr(classroom, "grade_submission", killed)
+    monkeypatch.setattr(workers, "grade_submission", killed)
     with Writer(course) as writer:
         found = {
             student: (graded, problem)

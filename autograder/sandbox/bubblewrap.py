@@ -19,6 +19,7 @@ HERE = Path(__file__).parent
 CODE = ("channel.py", "executor.py", "forkserver.py", "seccomp.py")  # what runs in a notebook's process
 COURSE = Path("/course")  # where notebooks run inside; the students' package lies in it
 WRITABLE = (Path("/tmp"), Path("/dev/shm"), COURSE)
+FOLDER = 50_000_000  # bytes in each of them
 PATIENCE = 60.0  # seconds for a sandbox to open or close, on a machine under load
 
 INSTALL = (
@@ -98,11 +99,8 @@ class Namespaces:
         self.process.wait()
 
 
-def command(code, megabytes=50):
-    """The arguments of `bwrap` that describe the sandbox.
-
-    megabytes: the size of each writable folder
-    """
+def command(code):
+    """The arguments of `bwrap` that describe the sandbox."""
     package = code / "transform_lab"
     root = os.getuid() == 0
     arguments = ["--die-with-parent", "--new-session", "--clearenv"]
@@ -117,7 +115,7 @@ def command(code, megabytes=50):
             arguments += ["--ro-bind", f"/{link}", f"/{link}"]
     arguments += ["--proc", "/proc", "--dev", "/dev"]
     for folder in map(str, WRITABLE):
-        arguments += ["--perms", "1777", "--size", str(megabytes * 1_000_000), "--tmpfs", folder]
+        arguments += ["--perms", "1777", "--size", str(FOLDER), "--tmpfs", folder]
     arguments += ["--perms", "0777", "--dir", str(COURSE / "transforms")]
     made = {*WRITABLE, COURSE / "transforms"}
     for path in filter(Path.exists, map(Path, ("/etc/ld.so.cache", "/etc/fonts"))):

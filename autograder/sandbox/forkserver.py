@@ -35,6 +35,7 @@ def main():
     null = os.open(os.devnull, os.O_RDWR)
     os.dup2(null, 0)
     libc = ctypes.CDLL(None, use_errno=True)
+    own = os.open("/proc/self/ns/pid", os.O_RDONLY) if sys.platform == "linux" else None
     try:
         executor, rules = _load()
         signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for the guards
@@ -46,9 +47,12 @@ def main():
             command, descriptors, _, _ = socket.recv_fds(control, 1, 2)
             if not command:
                 return
-            if len(descriptors) == 1 or os.getuid() == 0:
+            if len(descriptors) == 1:
                 _start(libc, executor, rules, *descriptors)
-            elif os.fork() == 0:  # once in a sandbox's user namespace, a process cannot leave it for the next one's
+            elif os.getuid() == 0:
+                _start(libc, executor, rules, *descriptors)
+                _enter(libc, own, CLONE_NEWPID)
+            elif os.fork() == 0:  # who has no right to come back does not leave
                 _guard(libc, executor, rules, *descriptors)
             for descriptor in descriptors:
                 os.close(descriptor)
@@ -96,12 +100,16 @@ def _home():
 
 
 def _guard(libc, executor, rules, connection, sandbox):
-    """Enter the user namespace, start the notebook's process from there, and wait for its end."""
+    """Enter the sandbox (in one step: the first would take away the right to the others) and start the notebook there."""
     _die_with_parent(libc)
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
     try:
-        _enter(libc, sandbox, CLONE_NEWUSER)
-        _start(libc, executor, rules, connection, sandbox)
+        try:
+            _enter(libc, sandbox, CLONE_NEWUSER | CLONE_NEWPID | NAMESPACES)
+        except OSError as error:
+            os.write(connection, f"E{error}".encode())
+            return
+        _start(libc, executor, rules, connection)
         os.closerange(0, os.sysconf("SC_OPEN_MAX"))
         os.wait()
     finally:
@@ -113,7 +121,6 @@ def _start(libc, executor, rules, connection, sandbox=None):
     grader = socket.socket(fileno=os.dup(connection))
     try:
         if sandbox is not None:
-            own = os.open("/proc/self/ns/pid", os.O_RDONLY | os.O_CLOEXEC)
             _enter(libc, sandbox, CLONE_NEWPID)  # holds for the children of this process alone
         child = os.fork()
         if child == 0:
@@ -123,9 +130,6 @@ def _start(libc, executor, rules, connection, sandbox=None):
                 _notebook(libc, executor, rules, grader)
             finally:
                 os._exit(1)  # whatever was raised: this process goes no other way
-        if sandbox is not None:
-            _enter(libc, own, CLONE_NEWPID)
-            os.close(own)
         handle = [os.pidfd_open(child)] if hasattr(os, "pidfd_open") else []
         socket.send_fds(grader, [f"P{child:>20}".encode()], handle)
         for descriptor in handle:
@@ -154,7 +158,7 @@ def _notebook(libc, executor, rules, connection):
     os.setsid()
     os.closerange(3, connection.fileno())
     os.closerange(connection.fileno() + 1, os.sysconf("SC_OPEN_MAX"))
-    grader = Channel(connection)
+    grader = Channel(connection, largest=None)
     try:
         settings = grader.receive()
         for name, amount in settings["limits"].items():
