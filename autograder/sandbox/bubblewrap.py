@@ -63,6 +63,7 @@ class Namespaces:
                 stdout=subprocess.PIPE,
                 stderr=errors,
                 pass_fds=(arguments.fileno(), theirs),
+                env={},  # what bubblewrap itself was started with can be read inside
                 start_new_session=True,  # Ctrl-C is for the grader
             )
             os.close(theirs)
