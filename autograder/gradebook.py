@@ -7,6 +7,7 @@ instead of cell by cell.
 import copy
 import csv
 import io
+import logging
 import shutil
 import sqlite3
 import time
@@ -22,6 +23,9 @@ from .api import settings
 from .course import ASSIGNMENT, CourseError, replace
 
 PATIENCE = 60.0  # seconds to wait for a database that somebody else has locked
+
+
+logging.getLogger("tornado.application").setLevel(logging.CRITICAL)  # nbgrader's: what fails is said by ours
 
 
 @event.listens_for(Engine, "connect")

@@ -38,8 +38,10 @@ class Cluster:
 
     def __init__(self, address):
         from distributed import Client
+        from distributed.comm import get_address_host_port
 
         try:
+            get_address_host_port(address)  # of a text that is no address, Client would say so with a traceback
             self.client = Client(address, timeout=PATIENCE, set_as_default=False)
         except (OSError, ValueError) as error:
             raise CourseError(

@@ -46,7 +46,7 @@ def lacking(what):
     pytest.skip(what)
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def sandboxed():
     """For tests that need bubblewrap."""
     from autograder import sandbox
@@ -62,7 +62,7 @@ def chromium():
     return found or lacking("needs Chromium, to open pages as a student's browser does")
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def hand_in():
     """hand_in(course, student, notebooks): put files into submitted/, {notebook name: path, bytes or notebook}."""
     import nbformat
