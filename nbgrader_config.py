@@ -32,3 +32,5 @@ c.Autograde.autograde_preprocessors = [
     "nbgrader.preprocessors.AssignLatePenalties",
     "nbgrader.preprocessors.CheckCellMetadata",
 ]
+# What students write is shown in feedback and formgrader without scripts and without anything from elsewhere.
+c.HTMLExporter.filters = {"markdown2html": "autograder.pages.markdown2html"}

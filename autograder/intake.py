@@ -68,6 +68,8 @@ def _parse(content):
         for cell in notebook.cells:
             if cell.cell_type == "code":
                 cell.outputs, cell.execution_count = [], None
+            elif cell.cell_type == "raw":
+                cell.cell_type = "markdown"  # pages show raw cells unfiltered
         notebook.nbformat, notebook.nbformat_minor = 4, 5
         _unique_cell_ids(notebook)
         nbformat.validate(notebook)

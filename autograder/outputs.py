@@ -2,17 +2,24 @@
 
 import base64
 import binascii
+import re
 
 import nh3
 
 TEXT = ("text/plain", "text/markdown", "text/latex")
 PICTURES = ("image/png", "image/jpeg", "image/gif")
+ACTIVE_LATEX = re.compile(r"\\(href|url|require|style|class|cssId|unicode|html[A-Za-z]*|data|bbox)\b")
 HTML_TAGS = nh3.ALLOWED_TAGS - {"a", "img"}
 
 
 def printable(text):
     """Text without the halves of characters that no file and no terminal can hold."""
     return text.encode("utf-8", "replace").decode("utf-8")
+
+
+def calm_latex(text):
+    """Text without the commands by which a formula can link, load and style; their names are left to be read."""
+    return ACTIVE_LATEX.sub(r"\1", text)
 
 
 def safe(output):
@@ -49,6 +56,8 @@ def _safe_data(mime, value):
     if not isinstance(text, str):
         return None
     text = printable(text)
+    if mime in ("text/markdown", "text/latex"):
+        text = calm_latex(text)
     if mime in ("text/html", "text/markdown"):
         return nh3.clean(text, tags=HTML_TAGS)
     if mime in TEXT:
