@@ -103,6 +103,8 @@ def test_a_page_of_feedback_holds_nothing_of_it(course, hand_in, solved, sandbox
     hand_in(course, "honest", {ONE: solved[ONE]})
     code, said = run(course, "grade")
     assert code == 0, said
+    graded = nbformat.read(course.autograded("eve") / f"{ONE}.ipynb", as_version=4)
+    assert {cell.cell_type for cell in graded.cells} == {"code", "markdown"}  # nbconvert shows raw cells unfiltered
     pages = [Parsed((course.feedback(name) / f"{ONE}.html").read_text()).tags for name in ("eve", "honest")]
     scripts, expected = [[tag for tag in page if tag[0] in FORBIDDEN] for page in pages]
     assert scripts == expected  # nbgrader's own, and no other
