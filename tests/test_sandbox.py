@@ -1,6 +1,7 @@
 """The real sandbox: what a notebook's process can do, and what it cannot reach."""
 
 import os
+import time
 from functools import cache
 from pathlib import Path
 
@@ -171,6 +172,81 @@ def test_forks_are_limited(sandbox):
     with Sandbox(PACKAGE, limits=Limits(cell=5.0, processes=20)) as small:
         assert error(small, bomb) == "BlockingIOError"
         assert value(small, "'next'") == "'next'"
+
+
+FORKED = "import os, time\nfor _ in range({count}):\n    if os.fork() == 0:\n        {work}\n        os._exit(0)\n{after}"
+
+
+def killed(limits, cell):
+    """Why a cell's sandbox was ended, in words."""
+    with Sandbox(PACKAGE, limits=limits) as box, box.notebook() as notebook:
+        with pytest.raises(Ended) as ended:
+            notebook.run_cell(cell)
+            for _ in range(100):  # what it left running is seen while the next cells run
+                notebook.run_cell("import time; time.sleep(0.1)")
+    assert ended.value.status == "killed"
+    return ended.value.reason
+
+
+def test_memory_of_many_processes_is_limited():
+    """Each stays below its own limit, all together do not."""
+    cell = FORKED.format(count=8, work="x = bytearray(100_000_000); time.sleep(60)", after="time.sleep(60)")
+    assert killed(Limits(memory=600_000_000), cell) == "it used more than 0.6 GB of memory"
+
+
+def test_processor_time_is_limited():
+    """Of all processes together, also of those that a cell leaves behind."""
+    cell = FORKED.format(count=4, work="os.setsid()\n        while True: pass", after="")
+    assert killed(Limits(cpu=3.0), cell) == "it used more than 3 s of processor time"
+
+
+def test_the_number_of_files_is_limited():
+    cell = "for n in range(10**9):\n    open(f'/tmp/{n}', 'w').close()"
+    assert killed(Limits(files=2_000), cell) == "it used more than 2000 files"
+
+
+def test_time_without_a_processor_does_not_count(sandbox):
+    """Beside a notebook that keeps every processor busy, an honest function gets its whole time."""
+    hog = FORKED.format(count=25, work="os.setsid()\n        while True: pass", after="")
+    honest = "import time\ndef f():\n    while time.process_time() < start + 0.7:\n        pass\n    return 'done'"
+    with Sandbox(PACKAGE, limits=Limits(cpu=1000.0)) as busy, busy.notebook() as hogs:
+        hogs.run_cell(hog)
+        with Sandbox(PACKAGE, limits=Limits(call=1.2)) as box, box.notebook() as notebook:
+            notebook.run_cell(f"{honest}\nstart = time.process_time()")
+            start = time.monotonic()
+            assert notebook.call("f", [], {}).value == "done"
+            assert time.monotonic() - start > 1.2  # or the machine was not busy enough to show anything
+
+
+@pytest.mark.parametrize(
+    "attempt",
+    [
+        "socket.socket(40, socket.SOCK_STREAM)",  # AF_VSOCK, which knows no network namespace
+        "socket.socket(socket.AF_INET)",
+        "socket.socket(socket.AF_NETLINK, socket.SOCK_RAW)",
+        "socket.socketpair()[0].setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 100_000_000)",
+        "os.memfd_create('x')",
+        "fcntl.fcntl(os.pipe()[1], 1031, 1_000_000)",
+        "call('shmget', 0, 1000, 0o1600)",
+        "call('unshare', 0x10000000)",
+        "call('mount', b'none', b'/tmp', b'tmpfs', 0, None)",
+        "call('ptrace', 0, 0, None, None)",
+        "call('chroot', b'/tmp')",
+        "call('setuid', 0)",
+        "call('syscall', 425, 1, None)",  # io_uring_setup
+        "call('syscall', 321, 0, None, 0)",  # bpf
+        "call('syscall', 323, 0)",  # userfaultfd
+        "call('syscall', 248, b'user', b'x', b'y', 1, -2)",  # add_key
+    ],
+)
+def test_the_kernel_refuses_what_no_notebook_needs(sandbox, attempt):
+    define = (
+        "import ctypes, fcntl, os, socket\n"
+        "def call(name, *arguments):\n"
+        "    if getattr(ctypes.CDLL(None, use_errno=True), name)(*arguments) == -1:\n"
+        "        raise OSError(ctypes.get_errno(), name)\n"
+    )
+    assert error(sandbox, define + attempt) in ("OSError", "PermissionError")
 
 
 def test_output_is_limited(sandbox):
