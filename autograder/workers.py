@@ -4,6 +4,7 @@ Both have `submit(submission)`, which gives a concurrent.futures.Future of a Gra
 to read in advance.
 """
 
+import gc
 import multiprocessing
 import os
 import threading
@@ -86,6 +87,7 @@ _assignment = None  # in a process of the pool: what it grades against, sent onc
 def _start(assignment):
     global _assignment
     _assignment = assignment
+    gc.freeze()  # what the grader has loaded is not searched for garbage again and again
     end_with_parent()
 
 
