@@ -69,7 +69,9 @@ def _parser():
     sub.add_argument(
         "--jobs", type=_positive, default=os.cpu_count(), help="submissions at a time (default: all cores)"
     )
-    sub.add_argument("--scheduler", metavar="ADDRESS", help="grade on the workers of a Dask scheduler, such as tcp://host:8786")
+    sub.add_argument(
+        "--scheduler", metavar="ADDRESS", help="grade on the workers of a Dask scheduler, such as tcp://host:8786"
+    )
     sub.add_argument("--no-feedback", action="store_true", help="leave out nbgrader's feedback pages")
     sandbox_options(sub)
     add("report", report, "write the class report from what is graded")
@@ -210,7 +212,8 @@ def _grade(here, students, protected, seed=None, jobs=os.cpu_count(), force=Fals
                     counts.update(row.status for row in graded.rows)
                     for line in graded.problems:
                         progress.console.print(f"{student}: {line}", markup=False)
-                said = f"{len(fresh)} graded, {progress.tasks[bar].completed + 1 - len(fresh) - len(failed):g} unchanged"
+                done = int(progress.tasks[bar].completed) + 1
+                said = f"{len(fresh)} graded, {done - len(fresh) - len(failed)} unchanged"
                 said += f", {len(failed)} failed" if failed else ""
                 said += "".join(f", {count} {status}" for status, count in counts.items() if status != "graded")
                 progress.update(bar, advance=1, counts=said)
@@ -374,5 +377,5 @@ def export(options):
 
 
 def test(options):
-    everything = ["--numprocesses", str(os.cpu_count()), "--dist", "loadgroup"]
+    everything = ["--numprocesses", str(os.cpu_count()), "--dist", "loadfile"]
     return subprocess.call([sys.executable, "-m", "pytest", *(options.extra or everything)])

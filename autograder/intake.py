@@ -167,7 +167,7 @@ def _valid_id(identifier):
 def _unique_cell_ids(notebook):
     seen = set()
     for position, cell in enumerate(notebook.cells):
-        if cell.get("id") in seen or not _valid_id(cell.get("id")):
+        if not _valid_id(cell.get("id")) or cell["id"] in seen:
             cell["id"] = f"cell-{position}"
             while cell["id"] in seen:
                 cell["id"] += "x"

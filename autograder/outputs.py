@@ -2,6 +2,7 @@
 
 import base64
 import binascii
+import html
 import re
 
 import nh3
@@ -17,9 +18,12 @@ def printable(text):
     return text.encode("utf-8", "replace").decode("utf-8")
 
 
-def calm_latex(text):
-    """Text without the commands by which a formula can link, load and style; their names are left to be read."""
-    return ACTIVE_LATEX.sub(r"\1", text)
+def calm(text):
+    """Text in which no link runs a script, and no formula links, loads or styles; what is taken out is left as words."""
+    text = ACTIVE_LATEX.sub(r"\1", text)
+    while "javascript:" in html.unescape(text).lower():
+        text = re.sub("javascript:", "javascript ", html.unescape(text), flags=re.IGNORECASE)
+    return text
 
 
 def safe(output):
@@ -56,15 +60,17 @@ def _safe_data(mime, value):
     if not isinstance(text, str):
         return None
     text = printable(text)
-    if mime in ("text/markdown", "text/latex"):
-        text = calm_latex(text)
+    if mime == "text/markdown":
+        text = text.replace("![", "[")  # a picture would be loaded from elsewhere; a link waits to be followed
+    if mime in ("text/html", "text/markdown", "text/latex"):
+        text = calm(text)
     if mime in ("text/html", "text/markdown"):
         return nh3.clean(text, tags=HTML_TAGS)
     if mime in TEXT:
         return text
     if mime in PICTURES:
         try:
-            base64.b64decode(text, validate=False)
+            base64.b64decode("".join(text.split()), validate=True)
         except binascii.Error:
             return None
         return text

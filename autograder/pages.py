@@ -7,7 +7,7 @@ import nh3
 from jinja2 import pass_context
 from nbconvert.filters.markdown_mistune import IPythonRenderer, MarkdownWithMath
 
-from .outputs import calm_latex
+from .outputs import calm
 
 PICTURES = ("data:image/png;base64,", "data:image/jpeg;base64,", "data:image/gif;base64,")  # attached to a cell
 ATTRIBUTES = {
@@ -25,7 +25,7 @@ def markdown2html(context, source):
     """nbconvert's filter of that name, with a page as its result that holds nothing from elsewhere and no script."""
     renderer = IPythonRenderer(escape=False, attachments=context.get("cell", {}).get("attachments", {}))
     return nh3.clean(
-        MarkdownWithMath(renderer=renderer).render(calm_latex(source)),
+        MarkdownWithMath(renderer=renderer).render(calm(source)),
         tags=nh3.ALLOWED_TAGS | {"details", "summary", "input"},
         attributes=ATTRIBUTES,
         attribute_filter=_attribute,

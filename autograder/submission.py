@@ -7,6 +7,7 @@ import hashlib
 import os
 import stat
 from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
 
 import dateutil.parser
 
@@ -51,10 +52,11 @@ def collect(course, student):
         files[name] = content or b""  # where nothing can be read, the intake calls the notebook unreadable
         if problem:
             problems.append(f"{name}: {problem}.")
-    notebooks, room = len(files), LARGEST_FILES
-    for path in sorted(path for path in folder.rglob("*") if not _ignored(path, folder)):
-        name = printable(path.relative_to(folder).as_posix())
-        if name in files or name.removesuffix(".ipynb") in course.notebooks:
+    notebooks, room, folders = len(files), LARGEST_FILES, set()
+    for path in _paths(folder, problems):
+        relative = PurePosixPath(printable(path.relative_to(folder).as_posix()))
+        name, above = str(relative), {str(parent) for parent in relative.parents}
+        if name.removesuffix(".ipynb") in course.notebooks:
             continue
         content, problem = read(path)
         room -= len(content or b"")
@@ -63,10 +65,13 @@ def collect(course, student):
         elif name.endswith(".ipynb"):
             wanted = ", ".join(f"{released}.ipynb" for released in course.notebooks)
             problem = f"no notebook of this assignment has that name; rename it to one of {wanted} and grade again"
+        elif name in files or name in folders or above & set(files):
+            problem = "left out; another file has the same name once what cannot be printed is replaced"
         if problem:
             problems.append(f"{name}: {problem}.")
         else:
             files[name] = content
+            folders |= above
     timestamp, problem = _timestamp(folder)
     return Submission(student, files, tuple(problems + [problem] if problem else problems), timestamp)
 
@@ -81,9 +86,29 @@ def _timestamp(folder):
         return None, f"timestamp.txt: {text[:60]!r} is no date; graded as if there were none."
 
 
+def _paths(folder, problems):
+    """What is in a folder and those below it, links included; hidden files, caches and the students' package are not.
+
+    (They are nobody's work; the grader uses the course's own package.)
+    """
+
+    def said(error):
+        name = printable(os.path.relpath(error.filename, folder))
+        problems.append(f"{name if len(name) < 200 else name[:200] + '…'}: left out; {error.strerror}.")
+
+    for here, folders, names in os.walk(folder, onerror=said):
+        ignored = {name for name in folders + names if name.startswith(".") or name == "__pycache__"}
+        if Path(here) == folder:
+            ignored.add("transform_lab")
+        links = [name for name in folders if os.path.islink(os.path.join(here, name))]
+        folders[:] = sorted(set(folders) - ignored)
+        for name in sorted({*names, *links} - ignored):
+            yield Path(here, name)
+
+
 def read(path):
     """(the bytes of a regular file or None, what is wrong with it or None); follows no link, waits for nobody."""
-    if path.is_symlink():
+    if os.path.islink(path):
         return None, "left out; it is a link"
     try:
         descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
@@ -96,10 +121,3 @@ def read(path):
             return file.read(LARGEST + 1), None
     finally:
         os.close(descriptor)
-
-
-def _ignored(path, folder):
-    """Folders, caches and hidden files are nobody's work; the grader uses the course's own package."""
-    parts = path.relative_to(folder).parts
-    hidden = any(part.startswith(".") or part == "__pycache__" for part in parts)
-    return hidden or parts[0] == "transform_lab" or (path.is_dir() and not path.is_symlink())

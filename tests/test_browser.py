@@ -23,8 +23,6 @@ from PIL import Image
 from transform_lab import tft
 from transform_lab.animations import between
 
-pytestmark = pytest.mark.xdist_group("browser")
-
 NOTEBOOKS = [path.stem for path in sorted((ROOT / "notebooks/transforms").glob("*.ipynb"))]
 SCREENSHOTS = ROOT / "screenshots"
 FLAGS = [*CHROMIUM_FLAGS, *SOFTWARE_WEBGL]

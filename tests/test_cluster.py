@@ -15,7 +15,7 @@ from test_nbgrader import marks
 
 from autograder.course import Course
 
-pytestmark = [pytest.mark.usefixtures("sandboxed"), pytest.mark.xdist_group("cluster")]
+pytestmark = pytest.mark.usefixtures("sandboxed")
 
 
 @pytest.fixture

@@ -206,7 +206,9 @@ def test_a_cell_that_brings_its_process_down_costs_its_own_exercise(classroom, h
         "same_rotation": 1.0,
     }
     text = (classroom.autograded("down") / f"{ONE}.ipynb").read_text()
-    assert text.count("the grader stopped this cell: its process ended all of a sudden") == len(endings) + 1  # a call, too
+    assert (
+        text.count("the grader stopped this cell: its process ended all of a sudden") == len(endings) + 1
+    )  # a call, too
 
 
 def test_a_gradebook_in_postgresql(classroom, undisturbed, postgresql):
@@ -238,7 +240,9 @@ def postgresql(tmp_path):
         shutil.chown(data, "postgres")
         as_user = ["setpriv", "--reuid", "postgres", "--regid", "postgres", "--init-groups"]
     subprocess.run(
-        [*as_user, programs / "initdb", "-D", data, "-U", "grader", "-A", "trust", "-N"], check=True, capture_output=True
+        [*as_user, programs / "initdb", "-D", data, "-U", "grader", "-A", "trust", "-N"],
+        check=True,
+        capture_output=True,
     )
     server = subprocess.Popen(
         [*as_user, programs / "postgres", "-D", data, "-k", sockets, "-c", "listen_addresses="],

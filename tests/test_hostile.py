@@ -1596,8 +1596,6 @@ class Leftovers:
 
 # --- The tests --------------------------------------------------------------------------------------------------------
 
-pytestmark = pytest.mark.xdist_group("hostile")  # one class after another: each has both processors
-
 
 def test_countless_cells_are_refused_at_once(released):
     """Reading a notebook is the one part of the work that no sandbox and no limit of time surrounds."""

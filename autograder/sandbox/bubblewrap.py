@@ -126,7 +126,8 @@ def command(code):
             arguments += _bind(folder, folder, made)
     arguments += _bind(code, code, made)
     arguments += _bind(package, COURSE / "transforms" / package.name, made)
-    return [*arguments, "--chdir", str(COURSE / "transforms")]
+    # bubblewrap makes / and /dev as folders in memory, of no bounded size.
+    return [*arguments, "--remount-ro", "/dev", "--remount-ro", "/", "--chdir", str(COURSE / "transforms")]
 
 
 def copy_code(package):

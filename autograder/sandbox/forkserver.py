@@ -63,7 +63,7 @@ def main():
 def _load():
     """Import what notebooks use, and set IPython up."""
     with _home():
-        import numpy.random
+        import numpy.random  # noqa: F401
         import scipy.spatial.transform  # noqa: F401
         from executor import Executor
 

@@ -47,10 +47,10 @@ class Limits:
     grace: float = 1.0  # between the interrupt and the end of the process
     cpu: float = 60.0  # of processor time, all processes of a notebook together
     memory: int = 2_000_000_000  # bytes of address space for each process, and of memory for all of them together
-    processes: int = 64  # threads count, too
+    processes: int = 40  # threads count, too
     file: int = 20_000_000  # bytes of one file
     files: int = 20_000
-    descriptors: int = 256  # open files, pipes and sockets of a process
+    descriptors: int = 64  # open files, pipes and sockets of a process; what is in them counts nowhere else
 
     def resources(self):
         """For resource.setrlimit, inside the sandbox."""

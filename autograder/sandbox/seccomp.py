@@ -40,8 +40,6 @@ def notebook_filter():
     for name in ("socket", "socketpair"):  # AF_VSOCK, for one, knows no network namespace
         rules.add_rule(pyseccomp.ERRNO(errno.ENETUNREACH), name, Arg(0, pyseccomp.NE, socket.AF_UNIX))
     for option in BUFFERS:  # sockets and pipes hold what is written to them, and no limit counts it
-        rules.add_rule(
-            refuse, "setsockopt", Arg(1, pyseccomp.EQ, socket.SOL_SOCKET), Arg(2, pyseccomp.EQ, int(option))
-        )
+        rules.add_rule(refuse, "setsockopt", Arg(1, pyseccomp.EQ, socket.SOL_SOCKET), Arg(2, pyseccomp.EQ, int(option)))
     rules.add_rule(refuse, "fcntl", Arg(1, pyseccomp.EQ, F_SETPIPE_SZ))
     return rules
