@@ -37,19 +37,21 @@ def grade_class(course, students, assignment, writer, jobs, force=False, cluster
                 done = wait(running, return_when=FIRST_COMPLETED).done
                 if any(isinstance(future.exception(), BrokenProcessPool) for future in done):
                     # One of these brought a worker down: graded one by one, only that one fails.
-                    pool.__exit__()
+                    pool.close()
                     suspects, running = list(running.values()), {}
                     for submission in suspects:
-                        with Processes(assignment, 1) as alone:
-                            future = alone.submit(submission)
-                            wait([future])
+                        alone = Processes(assignment, 1)
+                        future = alone.submit(submission)
+                        wait([future])
+                        alone.close()
                         yield _record(writer, submission.student, future)
                     pool = Processes(assignment, jobs)
                     continue
                 for future in done:
                     yield _record(writer, running.pop(future).student, future)
     finally:
-        pool.__exit__()
+        if pool is not cluster:  # which belongs to the caller
+            pool.close()
 
 
 def _record(writer, student, future):

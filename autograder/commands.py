@@ -150,7 +150,7 @@ def grade(options):
 
     here = course()
     ForkServer.serving(here.package)  # loads while the rest is loaded here
-    from . import gradebook  # noqa: F401
+    from . import gradebook  # noqa: F401 (takes as long as the fork server's start)
     from .workers import Cluster
 
     students = here.students()
@@ -256,15 +256,20 @@ def _busy():
 
 
 def _progress():
-    """A bar with: how many are done, how many a minute, the time left, and what came of them."""
+    """A bar with: how many are done, how many a minute, the time left; and below it, what came of them."""
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, ProgressColumn, TextColumn, TimeRemainingColumn
 
     class Rate(ProgressColumn):
         def render(self, task):
             return Text(f"{task.speed * 60:.0f}/min" if task.speed else "")
 
+    class WithCounts(Progress):
+        def get_renderables(self):
+            yield from super().get_renderables()
+            yield from (Text(task.fields["counts"]) for task in self.tasks if task.fields["counts"])
+
     columns = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), Rate(), TimeRemainingColumn()
-    return Progress(*columns, TextColumn("{task.fields[counts]}"), console=console)
+    return WithCounts(*columns, console=console)
 
 
 def _add_row(table, *cells):

@@ -18,16 +18,14 @@ PATIENCE = 10  # seconds for a scheduler to answer
 
 
 class Processes:
-    """A pool of processes on this machine; a context manager."""
+    """A pool of processes on this machine."""
 
     def __init__(self, assignment, jobs):
         self.pool = ProcessPoolExecutor(jobs, initializer=_start, initargs=(assignment,))
         self.ahead = EACH_AHEAD * jobs
 
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
+    def close(self):
+        """Wait for what is being graded; what has not begun is dropped."""
         self.pool.shutdown(cancel_futures=True)
 
     def submit(self, submission):

@@ -38,7 +38,7 @@ def main():
     own = os.open("/proc/self/ns/pid", os.O_RDONLY) if sys.platform == "linux" else None
     try:
         executor, rules = _load()
-        signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for the guards
+        signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for what is forked
         ready_for_figures = False
         while True:
             if not ready_for_figures and not select.select([control], [], [], 0)[0]:
@@ -181,7 +181,7 @@ def _notebook(libc, executor, rules, connection):
 
 
 class _Capabilities(ctypes.Structure):
-    """The two structures of capset(2): version and process; then effective, permitted and inheritable, twice."""
+    """The header of capset(2): its version, which takes three sets of two words each, and the process (0: this one)."""
 
     _fields_ = [("version", ctypes.c_uint32), ("process", ctypes.c_int)]
     VERSION_3 = 0x20080522
