@@ -38,7 +38,7 @@ def check(name, function):
         return
     if not isinstance(name, str):
         raise CheckFailed('check takes the exercise\'s name in quotes first: check("chain", chain)')
-    exercise = _exercise(name)
+    exercise = exercise_data(name)
     if not callable(function):
         raise CheckFailed(f'check takes the function itself, without parentheses: check("{name}", {name})')
     try:
@@ -107,7 +107,8 @@ def _key():
         raise CheckFailed("transform_lab/key.json is missing: fetch the assignment's folder again.") from None
 
 
-def _exercise(name):
+def exercise_data(name):
+    """The exercise `name` with its public cases, as plain data; see transform_lab.verdict."""
     if name not in _key():
         raise CheckFailed(f"There is no exercise called {name!r}; there are {', '.join(_key())}.")
     return _key()[name]

@@ -179,6 +179,14 @@ class Viewer(Scene):
         rows = 1 + (len(self._motion.controls) + bool(self._motion.seconds) if self._motion else 0)
         return page.over_picture(body, still, Scene.description(scene), caption, rows)
 
+    def still(self):
+        """Return the scene as a still picture in HTML, with its text for screen readers: for pages without scripts."""
+        from . import page
+
+        scene, drawing, states, length = self._drawings()
+        picture = self._picture(scene, drawing, page.text_height([drawing, *states]))
+        return page.still(picture, Scene.description(scene), self._seen_in(scene, drawing, length))
+
     def picture(self):
         """Return the scene as a still picture: the bytes of a PNG file."""
         from . import page
@@ -205,6 +213,10 @@ class Viewer(Scene):
 
     def _caption(self, scene, drawing, length):
         """Return a line on what is to be seen and how to turn it."""
+        return f"{self._seen_in(scene, drawing, length)} Drag to turn, click and scroll to zoom."
+
+    def _seen_in(self, scene, drawing, length):
+        """Return a line on the fixed frame, the axes and the grid."""
         from .drawing import grid
 
         lengths = {frame.length or length for frame in scene.frames.values()}
@@ -212,5 +224,4 @@ class Viewer(Scene):
         _, step = grid(drawing.seen_from(scene.fixed_frame))
         return (
             f"Fixed frame {scene.fixed_frame}. Axes {long} m long: X red, Y green, Z blue. Grid at z = 0, squares of {step:g} m."
-            " Drag to turn, click and scroll to zoom."
         )
