@@ -11,18 +11,29 @@ from .exercises import EXERCISES, PUBLIC_SEED, key
 
 
 def public_key(course):
-    """The text of key.json: the public cases of every exercise, with its points as the source notebooks have them."""
-    points = {}
+    """The text of key.json: the public cases of every exercise, and what each notebook asks for how many points."""
+    points, notebooks = {}, {}
     for path in sorted(course.source.glob("*.ipynb")):
+        heading, asked = "", {"exercises": [], "questions": []}
         for cell in nbformat.read(path, as_version=4).cells:
             nbgrader = cell.metadata.get("nbgrader", {})
-            if nbgrader.get("grade") and nbgrader.get("grade_id") in EXERCISES:
+            if nbgrader.get("grade") and nbgrader["grade_id"] in EXERCISES:
                 points[nbgrader["grade_id"]] = nbgrader["points"]
+                asked["exercises"].append(nbgrader["grade_id"])
+            elif nbgrader.get("grade"):
+                title = heading.removeprefix("Question: ").partition(" (")[0]
+                asked["questions"].append([title, nbgrader["points"]])
+            elif cell.cell_type == "markdown":
+                heading = ([line for line in cell.source.splitlines() if line.startswith("#")] or [heading])[-1].strip(
+                    "# "
+                )
+        notebooks[path.stem] = asked
     absent = [name for name in EXERCISES if name not in points]
     if absent:
         raise CourseError(f"The notebooks in source/{ASSIGNMENT} have no test cell for: {', '.join(absent)}.")
     exercises = {name: {"points": points[name], **key(EXERCISES[name], PUBLIC_SEED)} for name in points}
-    return json.dumps({"exercises": exercises}, ensure_ascii=False, separators=(",", ":")) + "\n"
+    found = {"notebooks": notebooks, "exercises": exercises}
+    return json.dumps(found, ensure_ascii=False, separators=(",", ":")) + "\n"
 
 
 def release(course):

@@ -14,7 +14,9 @@ from .animations import animate_approach, animate_chain, animate_inverse, animat
 from .check import check, once_done
 from .markers import arrow_marker, axis_marker
 from .messages import ColorRGBA, Header, Marker, Point, Pose, PoseStamped, Quaternion, Vector3
+from .mistakes import show_mistake
 from .plots import plot_columns, plot_from_above, plot_quaternion
+from .summary import sum_up
 from .viewer import Viewer
 
 __all__ = [
@@ -39,6 +41,8 @@ __all__ = [
     "plot_from_above",
     "plot_quaternion",
     "rospy",
+    "show_mistake",
+    "sum_up",
     "tft",
     "visualization_msgs",
 ]

@@ -38,7 +38,7 @@ def check(name, function):
         return
     if not isinstance(name, str):
         raise CheckFailed('check takes the exercise\'s name in quotes first: check("chain", chain)')
-    exercise = exercise_data(name)
+    exercise = _exercise(name)
     if not callable(function):
         raise CheckFailed(f'check takes the function itself, without parentheses: check("{name}", {name})')
     try:
@@ -102,16 +102,24 @@ def _shortened(text, most):
 @cache
 def _key():
     try:
-        return json.loads(KEY.read_text(encoding="utf-8"))["exercises"]
+        return json.loads(KEY.read_text(encoding="utf-8"))
     except FileNotFoundError:
         raise CheckFailed("transform_lab/key.json is missing: fetch the assignment's folder again.") from None
 
 
-def exercise_data(name):
-    """The exercise `name` with its public cases, as plain data; see transform_lab.verdict."""
-    if name not in _key():
-        raise CheckFailed(f"There is no exercise called {name!r}; there are {', '.join(_key())}.")
-    return _key()[name]
+def _exercise(name):
+    known = _key()["exercises"]
+    if name not in known:
+        raise CheckFailed(f"There is no exercise called {name!r}; there are {', '.join(known)}.")
+    return known[name]
+
+
+def notebook_data(name):
+    """The exercises of the notebook `name`, as {name: plain data}, and its questions for a person, as [[title, points], …]."""
+    notebooks = _key()["notebooks"]
+    if name not in notebooks:
+        raise CheckFailed(f"There is no notebook called {name!r}; there are {', '.join(notebooks)}.")
+    return {exercise: _exercise(exercise) for exercise in notebooks[name]["exercises"]}, notebooks[name]["questions"]
 
 
 def _show(verdict, points):

@@ -37,7 +37,7 @@ def scene(verdict):
             elif verdict.returns == "pose":
                 viewer.add_frame(label, answer, ghost=ghost)
             else:
-                _add_matrix(viewer, label, parts, ghost, _length(all_parts.values()))
+                add_matrix(viewer, label, matrix_of(parts), ghost, _length(all_parts.values()))
     except ValueError:  # nothing that could be drawn; the panel says what is wrong with it
         return None
     if "expected" in answers:
@@ -67,12 +67,10 @@ def _length(answers):
     return round_number(0.5 * max(sizes)) if sizes and 0 < max(sizes) < FARTHEST else 1.0
 
 
-def _add_matrix(viewer, label, parts, ghost, length):
-    """Add a frame; of a matrix that is no rotation, its three columns as arrows, to the scale of the frames' axes."""
-    matrix = matrix_of(parts)
+def add_matrix(viewer, label, matrix, ghost=False, length=1.0):
+    """Add the frame of a 3x3 or 4x4 matrix to `viewer`; of one that is no rotation, its three columns as arrows."""
     if matrix.shape == (3, 3):
-        matrix = tft.identity_matrix()
-        matrix[:3, :3] = parts["rotation"]
+        matrix = np.block([[matrix, np.zeros((3, 1))], [np.zeros((1, 3)), 1]])
     try:
         viewer.add_frame(label, matrix, length=length, ghost=ghost)
     except ValueError:
