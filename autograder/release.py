@@ -24,9 +24,8 @@ def public_key(course):
                 title = heading.removeprefix("Question: ").partition(" (")[0]
                 asked["questions"].append([title, nbgrader["points"]])
             elif cell.cell_type == "markdown":
-                heading = ([line for line in cell.source.splitlines() if line.startswith("#")] or [heading])[-1].strip(
-                    "# "
-                )
+                lines = [line for line in cell.source.splitlines() if line.startswith("#")]
+                heading = lines[-1].strip("# ") if lines else heading
         notebooks[path.stem] = asked
     absent = [name for name in EXERCISES if name not in points]
     if absent:

@@ -24,7 +24,9 @@ def sum_up(notebook):
     rows = [_row(name, exercise, names.get(name)) for name, exercise in exercises.items()]
     done, most = sum(row[1] == row[2] for row in rows), sum(row[2] for row in rows)
     total = f"{done} of {len(rows)} exercises are right: {sum(row[1] for row in rows):g} of {most:g} points with these cases."
-    asked = [f"{title}: {points:g} points, read by a person. Have you written your answer?" for title, points in questions]
+    asked = [
+        f"{title}: {points:g} points, read by a person. Have you written your answer?" for title, points in questions
+    ]
     file = f"{notebook}.ipynb"
     hand_in = f"To hand in: save this notebook, and hand in the file {file} under this name."
     lines = [f"{name}  {earned:g} of {points:g}  {says}" for name, earned, points, says in rows]

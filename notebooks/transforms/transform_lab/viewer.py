@@ -222,4 +222,5 @@ class Viewer(Scene):
         lengths = {frame.length or length for frame in scene.frames.values()}
         long = " to ".join(f"{value:g}" for value in sorted({min(lengths), max(lengths)}))
         _, step = grid(drawing.seen_from(scene.fixed_frame))
-        return f"Fixed frame {scene.fixed_frame}. Axes {long} m long: X red, Y green, Z blue. Grid at z = 0, squares of {step:g} m."
+        axes = f"Axes {long} m long: X red, Y green, Z blue."
+        return f"Fixed frame {scene.fixed_frame}. {axes} Grid at z = 0, squares of {step:g} m."
