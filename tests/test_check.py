@@ -258,7 +258,7 @@ def test_the_expected_frame_is_where_it_should_be():
 
 def test_columns_that_are_no_axes_are_drawn_as_arrows():
     words = pictured("rotation_from_axes", lambda x, y: np.column_stack((x, y, x + y))).description()
-    assert set(re.findall(r"^arrow (.+) in ", words, re.M)) == {"your x", "your y", "your z"}
+    assert set(re.findall(r"^arrow (.+) in ", words, re.M)) == {f"{letter} of b (yours)" for letter in "xyz"}
 
 
 @pytest.mark.parametrize(

@@ -160,7 +160,7 @@ def still(picture, description, caption):
     """Return HTML that shows `picture` (PNG bytes), whose alternative text is `description`."""
     source = base64.b64encode(picture).decode("ascii")
     return (
-        f'<figure style="margin: 0; max-width: 560px"><img src="data:image/png;base64,{source}"'
+        f'<figure style="margin: 0; max-width: 640px"><img src="data:image/png;base64,{source}"'
         f' alt="{html.escape(description)}" width="100%"><figcaption>{html.escape(caption)}</figcaption></figure>'
     )
 

@@ -67,9 +67,10 @@ class Gripper:
 class Scene:
     """Frames in a tree, as TF keeps them, and what is given in these frames; all lengths are in metres."""
 
-    def __init__(self, fixed_frame="world", ghost=False):
+    def __init__(self, fixed_frame="world", ghost=False, length=None):
         self.root = _name(fixed_frame, "fixed_frame")
-        self.frames = {fixed_frame: Frame(None, np.eye(4), ghost=ghost)}
+        length = None if length is None else _size(length, "the length of the fixed frame's axes")
+        self.frames = {fixed_frame: Frame(None, np.eye(4), length, ghost)}
         self.points, self.arrows, self.boxes, self.grippers, self.markers = {}, {}, {}, {}, {}
         self._text, self._fixed_frame = "", fixed_frame
 

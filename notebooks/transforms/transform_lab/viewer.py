@@ -29,11 +29,11 @@ class Viewer(Scene):
     and lettered. Drag to turn, click and use the wheel to zoom, drag with the right button to move.
 
     Adding something under a name that is taken replaces it. `viewer.text` is shown in the corner. With `ghost`, the fixed
-    frame is translucent, for what is to be seen in its place.
+    frame is translucent, for what is to be seen in its place; `length` is that of its axes, as in `add_frame`.
     """
 
-    def __init__(self, fixed_frame="world", ghost=False):
-        super().__init__(fixed_frame, ghost)
+    def __init__(self, fixed_frame="world", ghost=False, length=None):
+        super().__init__(fixed_frame, ghost, length)
         self._seen_from, self.at = "overview", None
         self._motion = self._link = None  # what moves it, and what keeps its live figures up to date
 

@@ -67,7 +67,7 @@ def _length(answers):
     return round_number(0.5 * max(sizes)) if sizes and 0 < max(sizes) < FARTHEST else 1.0
 
 
-def add_matrix(viewer, label, matrix, ghost=False, length=1.0):
+def add_matrix(viewer, label, matrix, ghost=False, length=None):
     """Add the frame of a 3x3 or 4x4 matrix to `viewer`; of one that is no rotation, its three columns as arrows."""
     if matrix.shape == (3, 3):
         matrix = np.block([[matrix, np.zeros((3, 1))], [np.zeros((1, 3)), 1]])
@@ -77,7 +77,7 @@ def add_matrix(viewer, label, matrix, ghost=False, length=1.0):
         if not np.array_equal(matrix[3], [0, 0, 0, 1]):
             raise
         for letter, column, color in zip("xyz", matrix[:3, :3].T, (X_RED, Y_GREEN, Z_BLUE)):
-            viewer.add_arrow(f"your {letter}", matrix[:3, 3] + length * column, tail=matrix[:3, 3], color=color)
+            viewer.add_arrow(f"{letter} of {label}", matrix[:3, 3] + (length or 1) * column, tail=matrix[:3, 3], color=color)
 
 
 def _add_given(viewer, parameters, given, answer):

@@ -17,15 +17,16 @@ def sum_up(notebook):
 
     The points are those that the cases of `check` give; the grader uses other cases of the same kinds.
     """
-    exercises, questions = notebook_data(notebook)
-    if os.environ.get("TRANSFORM_LAB_GRADING"):  # the grader calls the functions itself
+    if os.environ.get("TRANSFORM_LAB_GRADING"):
+        print("The grader sums up by itself.")
         return
+    exercises, questions = notebook_data(notebook)
     names = vars(__import__("__main__")) if shell() is None else shell().user_ns
     rows = [_row(name, exercise, names.get(name)) for name, exercise in exercises.items()]
     done, most = sum(row[1] == row[2] for row in rows), sum(row[2] for row in rows)
     total = f"{done} of {len(rows)} exercises are right: {sum(row[1] for row in rows):g} of {most:g} points with these cases."
     asked = [
-        f"{title}: {points:g} points, read by a person. Have you written your answer?" for title, points in questions
+        f"Question “{title}”: {points:g} points, read by a person. Have you written your answer?" for title, points in questions
     ]
     file = f"{notebook}.ipynb"
     hand_in = f"To hand in: save this notebook, and hand in the file {file} under this name."
@@ -49,10 +50,11 @@ def _row(name, exercise, function):
 
 
 def _table(rows, sentences):
+    left = ' style="text-align:left"'
     cells = "".join(
-        f"<tr><td>{'✓' if earned == points else '…' if not earned else '✗'}</td><td><code>{name}</code></td>"
-        f'<td style="text-align:right">{earned:g} of {points:g}</td><td style="text-align:left">{escape(says)}</td></tr>'
+        f"<tr><td>{'✓' if earned == points else '…' if not earned else '✗'}</td><td{left}><code>{name}</code></td>"
+        f"<td>{earned:g} of {points:g}</td><td{left}>{escape(says)}</td></tr>"
         for name, earned, points, says in rows
     )
-    head = '<tr><th></th><th>exercise</th><th>points</th><th style="text-align:left">what the check says</th></tr>'
+    head = f"<tr><th></th><th{left}>exercise</th><th>points</th><th{left}>what the check says</th></tr>"
     return f"<table>{head}{cells}</table>" + "".join(f"<p>{escape(sentence)}</p>" for sentence in sentences)
