@@ -4,8 +4,7 @@ import os
 from html import escape
 
 from . import panel
-from .check import call, notebook_data, shell
-from .verdict import examine
+from .check import notebook_data, shell, verdict_on
 
 __all__ = ["sum_up"]
 
@@ -23,38 +22,49 @@ def sum_up(notebook):
     exercises, questions = notebook_data(notebook)
     names = vars(__import__("__main__")) if shell() is None else shell().user_ns
     rows = [_row(name, exercise, names.get(name)) for name, exercise in exercises.items()]
-    done, most = sum(row[1] == row[2] for row in rows), sum(row[2] for row in rows)
-    total = f"{done} of {len(rows)} exercises are right: {sum(row[1] for row in rows):g} of {most:g} points with these cases."
-    asked = [
-        f"Question “{title}”: {points:g} points, read by a person. Have you written your answer?" for title, points in questions
+    right, earned, most = (sum(row[i] for row in rows) for i in ("right", "earned", "points"))
+    sentences = [
+        f"{right} of {len(rows)} exercises are right: {earned:g} of {most:g} points with these cases.",
+        *(
+            f"Question “{title}”: {n:g} points, read by a person. Have you written your answer?"
+            for title, n in questions
+        ),
+        f"To hand in: save this notebook, and hand in the file {notebook}.ipynb under this name.",
     ]
-    file = f"{notebook}.ipynb"
-    hand_in = f"To hand in: save this notebook, and hand in the file {file} under this name."
-    lines = [f"{name}  {earned:g} of {points:g}  {says}" for name, earned, points, says in rows]
-    text = "\n".join([*lines, total, *asked, hand_in])
+    lines = [f"{row['exercise']}  {row['earned']:g} of {row['points']:g}  {row['says']}" for row in rows]
+    text = "\n".join([*lines, *sentences])
     if shell() is None:
         print(text)
         return
     from IPython.display import display
 
-    display({"text/plain": text, "text/html": _table(rows, [total, *asked, hand_in])}, raw=True)
+    display({"text/plain": text, "text/html": _table(rows, sentences)}, raw=True)
 
 
 def _row(name, exercise, function):
-    """(exercise, points earned, points, what is to be said about it)."""
-    points = exercise["points"]
-    if not callable(function):
-        return name, 0.0, points, UNDEFINED
-    verdict = examine(name, exercise, lambda args, kwargs: call(function, args, kwargs))
-    return name, round(verdict.credit * points, 2), points, panel.title(verdict).partition(": ")[2].rstrip(".")
+    """What there is to say about one exercise."""
+    row = {
+        "exercise": name,
+        "mark": "…",
+        "right": False,
+        "earned": 0.0,
+        "points": exercise["points"],
+        "says": UNDEFINED,
+    }
+    if callable(function):
+        verdict = verdict_on(name, exercise, function)
+        row["mark"] = "✓" if verdict.right else "✗" if verdict.done else "…"
+        row["right"], row["earned"] = verdict.right, round(verdict.credit * exercise["points"], 2)
+        row["says"] = panel.title(verdict).partition(": ")[2].rstrip(".")
+    return row
 
 
 def _table(rows, sentences):
     left = ' style="text-align:left"'
     cells = "".join(
-        f"<tr><td>{'✓' if earned == points else '…' if not earned else '✗'}</td><td{left}><code>{name}</code></td>"
-        f"<td>{earned:g} of {points:g}</td><td{left}>{escape(says)}</td></tr>"
-        for name, earned, points, says in rows
+        f"<tr><td>{row['mark']}</td><td{left}><code>{row['exercise']}</code></td>"
+        f"<td>{row['earned']:g} of {row['points']:g}</td><td{left}>{escape(row['says'])}</td></tr>"
+        for row in rows
     )
     head = f"<tr><th></th><th{left}>exercise</th><th>points</th><th{left}>what the check says</th></tr>"
     return f"<table>{head}{cells}</table>" + "".join(f"<p>{escape(sentence)}</p>" for sentence in sentences)

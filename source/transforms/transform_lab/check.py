@@ -41,14 +41,19 @@ def check(name, function):
     exercise = _exercise(name)
     if not callable(function):
         raise CheckFailed(f'check takes the function itself, without parentheses: check("{name}", {name})')
-    try:
-        verdict = examine(name, exercise, lambda args, kwargs: call(function, args, kwargs))
-    except KeyboardInterrupt:
-        verdict = Verdict(name, "timeout", says="Your function was interrupted before it was done.", hint=LOOP)
+    verdict = verdict_on(name, exercise, function)
     points = round(verdict.credit * exercise["points"], 2), exercise["points"]
     _show(verdict, points)
     if verdict.done and not verdict.right:
         raise CheckFailed(panel.title(verdict))
+
+
+def verdict_on(name, exercise, function):
+    """The Verdict on `function` for the public cases of the exercise `name`, given as plain data."""
+    try:
+        return examine(name, exercise, lambda args, kwargs: call(function, args, kwargs))
+    except KeyboardInterrupt:
+        return Verdict(name, "timeout", says="Your function was interrupted before it was done.", hint=LOOP)
 
 
 @contextmanager

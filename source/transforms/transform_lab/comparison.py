@@ -77,7 +77,9 @@ def add_matrix(viewer, label, matrix, ghost=False, length=None):
         if not np.array_equal(matrix[3], [0, 0, 0, 1]):
             raise
         for letter, column, color in zip("xyz", matrix[:3, :3].T, (X_RED, Y_GREEN, Z_BLUE)):
-            viewer.add_arrow(f"{letter} of {label}", matrix[:3, 3] + (length or 1) * column, tail=matrix[:3, 3], color=color)
+            viewer.add_arrow(
+                f"{letter} of {label}", matrix[:3, 3] + (length or 1) * column, tail=matrix[:3, 3], color=color
+            )
 
 
 def _add_given(viewer, parameters, given, answer):
