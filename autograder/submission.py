@@ -44,9 +44,9 @@ class Submission:
         return total.hexdigest()
 
 
-def collect(course, student):
-    """The Submission in submitted/STUDENT."""
-    folder, files, problems = course.submitted(student), {}, []
+def collect(course, student, folder=None):
+    """The Submission in a folder (a path; None for submitted/STUDENT)."""
+    folder, files, problems = folder or course.submitted(student), {}, []
     for name in (f"{name}.ipynb" for name in course.notebooks):
         if not os.path.lexists(folder / name):
             problems.append(f"{name}: not handed in; 0 points.")
