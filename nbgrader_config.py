@@ -17,6 +17,9 @@ c = get_config()  # noqa: F821 (nbgrader provides it)
 
 c.CourseDirectory.root = ROOT
 c.CourseDirectory.release_directory = "notebooks"
+# What the course is called in nbgrader's exchange, which refuses a course without a name; another one for each year keeps
+# their submissions apart. Students need the same name in their configuration; where the exchange lies is the machine's.
+c.CourseDirectory.course_id = "transforms"
 
 # Submitted notebooks are mended on the way in, so that a broken one stops neither its student's others nor the batch.
 c.Autograde.exporter_class = "autograder.plugin.Exporter"
@@ -34,3 +37,6 @@ c.Autograde.autograde_preprocessors = [
 ]
 # What students write is shown in feedback and formgrader without scripts and without anything from elsewhere.
 c.HTMLExporter.filters = {"markdown2html": "autograder.pages.markdown2html"}
+# Students write into the exchange: what they put there neither fetches files of the instructor's nor stops the others.
+c.ExchangeFactory.collect = "autograder.exchange.Collect"
+c.ExchangeFactory.release_feedback = "autograder.exchange.ReleaseFeedback"

@@ -1,40 +1,90 @@
 """`python3 -m autograder check`: one student's files, without submitted/ or a gradebook."""
 
+import re
+
 from transform_lab import panel
 
-from .grading import assignment, grade_notebook, new_seed
+from .grading import assignment, grade_notebook, missing, new_seed
 from .intake import restore
 from .judge import rows
-from .submission import Submission
+from .submission import Submission, collect, read
+
+LONGEST = 300  # characters in a cell of the table
 
 
 def check_files(course, paths, seed=None, isolated=True):
-    """Grade notebook files: ([(Row, what was found in words), …], [files that cannot be graded], [what was mended]).
+    """Grade notebook files, or all that is in one folder.
 
-    Python files beside the first notebook, which it may import, come along; the students' package is the course's own.
+    Returns ([(Row, what was found in words), …], [files that cannot be graded], [what else there is to say]).
+    In a folder, notebooks that are not there count as missing. Links are not followed: a student's repository could
+    hold one to the solutions. The students' package is the course's own.
     """
-    found, refused, mended, fine = [], [], [], {}
+    refused = []
+    if len(paths) == 1 and paths[0].is_dir():
+        submission, wanted = collect(course, "", paths[0]), list(course.notebooks)
+    else:
+        submission, wanted, refused = _submission(course, paths)
+    found, said = [], list(submission.problems)
+    if not wanted:
+        return found, refused, said
+    against = assignment(course, new_seed() if seed is None else seed, isolated=isolated, notebooks=wanted)
+    with against.sandbox(submission) as sandbox:
+        for name in wanted:
+            released, content = course.notebooks[name], submission.files.get(f"{name}.ipynb")
+            if content is None:
+                found += [(row, "Not handed in.") for row in missing(released)]
+                continue
+            intake = restore(content, released)
+            verdicts = grade_notebook(intake, released, against, sandbox, submission)
+            said += intake.problems
+            found += [(row, panel.summary(verdicts[row.exercise])) for row in rows(released, verdicts)]
+    return found, refused, said
+
+
+def _submission(course, paths):
+    """(Submission of these files and the Python files beside the first, names of its notebooks, [what is refused])"""
+    refused, taken, files, problems = [], {}, {}, []
     for path in paths:
-        if not path.is_file():
-            refused.append(f"{path}: there is no such file.")
+        if path.is_dir():
+            refused.append(f"{path}: a folder is checked by itself; give it alone, or name the notebooks in it.")
         elif path.stem not in course.notebooks:
             names = ", ".join(f"{name}.ipynb" for name in course.notebooks)
             refused.append(f"{path}: no notebook of this assignment has that name; there are {names}.")
-        elif path.stem in fine:
-            refused.append(f"{path}: left out; {fine[path.stem]} is the same notebook.")
+        elif path.stem in taken:
+            refused.append(f"{path}: left out; {taken[path.stem]} is the same notebook.")
         else:
-            fine[path.stem] = path
-    if not fine:
-        return found, refused, mended
-    seed = new_seed() if seed is None else seed
-    against = assignment(course, seed, isolated=isolated, notebooks=fine)
-    folder = next(iter(fine.values())).parent
-    submission = Submission("", {path.name: path.read_bytes() for path in sorted(folder.glob("*.py"))})
-    with against.sandbox(submission) as sandbox:
-        for name, path in fine.items():
-            released = course.notebooks[name]
-            intake = restore(path.read_bytes(), released)
-            verdicts = grade_notebook(intake, released, against, sandbox, submission)
-            mended += intake.problems
-            found += [(row, panel.summary(verdicts[row.exercise])) for row in rows(released, verdicts)]
-    return found, refused, mended
+            content, problem = read(path)
+            if problem:
+                refused.append(f"{path}: {problem}." if path.is_file() else f"{path}: there is no such file.")
+            else:
+                taken[path.stem], files[f"{path.stem}.ipynb"] = path, content
+    for path in sorted(next(iter(taken.values())).parent.glob("*.py")) if taken else ():
+        content, problem = read(path)
+        if problem:
+            problems.append(f"{path.name}: {problem}.")
+        else:
+            files[path.name] = content
+    return Submission("", files, tuple(problems)), list(taken), refused
+
+
+def points(found):
+    """(earned, most) of what `check_files` found."""
+    return tuple(sum(getattr(row, name) for row, _ in found) for name in ("score", "max_score"))
+
+
+def markdown(found, lines):
+    """What `check_files` found as GitHub shows it (text): the points, a table, and the lines that there are to say."""
+    earned, most = points(found)
+    text = [f"**{earned:g} of {most:g} points**", "", "| notebook | exercise | points | |", "|---|---|---|---|"]
+    for row, says in found:
+        cells = row.notebook, row.exercise, f"{row.score:g} of {row.max_score:g}", says
+        text.append(f"| {' | '.join(map(_plain, cells))} |")
+    text += ["", *(f"- {_plain(line)}" for line in lines)]
+    return "\n".join(text) + "\n"
+
+
+def _plain(text):
+    """Text of anybody's as one line of Markdown that shows just it: no character left that means something there."""
+    text = " ".join(text.split())
+    text = text if len(text) <= LONGEST else f"{text[:LONGEST]}…"
+    return re.sub(r"[^\w ,()…]|_", lambda found: f"&#{ord(found[0])};", text)

@@ -78,7 +78,10 @@ def _parser():
     sub = add(
         "check", check, "grade one student's notebook files without a course; exit 1 unless all points are earned"
     )
-    sub.add_argument("notebooks", nargs="+", type=Path, metavar="NOTEBOOK")
+    sub.add_argument(
+        "notebooks", nargs="+", type=Path, metavar="NOTEBOOK", help="files, or the folder with all of them"
+    )
+    sub.add_argument("--summary", type=Path, metavar="FILE", help="append the table as Markdown (for GitHub Actions)")
     sandbox_options(sub)
     add("doctor", doctor, "say what protects grading on this machine, and what does not")
     sub = add("package", package, "make a zip of the notebooks for a learning management system")
@@ -345,18 +348,21 @@ def check(options):
     here = course()
     ForkServer.serving(here.package)  # loads while the rest is loaded here
 
-    from .check import check_files
+    from .check import check_files, markdown, points
 
     protected = _protection(here, options.unsafe_no_sandbox)
-    found, refused, mended = check_files(here, options.notebooks, options.seed, protected)
-    for line in refused + mended:
+    found, refused, said = check_files(here, options.notebooks, options.seed, protected)
+    for line in refused + said:
         errors.print(line, markup=False)
     table = Table("notebook", "exercise", "points", "", box=None, pad_edge=False)
     for row, says in found:
         _add_row(table, row.notebook, row.exercise, f"{row.score:g} of {row.max_score:g}", says)
-    earned, most = (sum(getattr(row, name) for row, _ in found) for name in ("score", "max_score"))
+    earned, most = points(found)
     console.print(table)
     console.print(f"{earned:g} of {most:g} points")
+    if options.summary:
+        with open(options.summary, "a", encoding="utf-8") as file:
+            file.write(markdown(found, refused + said))
     return 0 if found and earned == most and not refused else 1
 
 

@@ -21,6 +21,7 @@ from sqlalchemy.exc import DatabaseError, OperationalError
 
 from .api import settings
 from .course import ASSIGNMENT, CourseError, replace
+from .submission import TIMESTAMP
 
 PATIENCE = 60.0  # seconds to wait for a database that somebody else has locked
 
@@ -104,9 +105,7 @@ class Writer:
         """Each file is replaced in one step, so that nobody ever reads half of one."""
         folder = self.course.autograded(graded.student)
         folder.mkdir(parents=True, exist_ok=True)
-        files = {f"{name}.ipynb": text for name, text in graded.notebooks.items()}
-        if graded.timestamp:
-            files["timestamp.txt"] = graded.timestamp
+        files = {f"{name}.ipynb": text for name, text in graded.notebooks.items()} | graded.receipts
         for stale in {path.name for path in folder.iterdir()} - set(files):
             path = folder / stale
             shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
@@ -116,7 +115,7 @@ class Writer:
     def _write_marks(self, graded):
         book = self.gradebook
         book.update_or_create_student(graded.student)
-        given = {"timestamp": graded.timestamp} if graded.timestamp else {}
+        given = {"timestamp": graded.receipts[TIMESTAMP]} if TIMESTAMP in graded.receipts else {}
         submission = book.update_or_create_submission(ASSIGNMENT, graded.student, **given)
         notebooks = {notebook.id: graded.marks.get(notebook.name) for notebook in submission.notebooks}
         grades, comments = [], []

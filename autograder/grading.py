@@ -48,7 +48,7 @@ class Graded:
     notebooks: dict = field(default_factory=dict)  # {notebook name: JSON text}; none for a missing file
     marks: dict = field(default_factory=dict)  # {notebook name: Marks}
     problems: list = field(default_factory=list)
-    timestamp: str | None = None  # when the submission was handed in
+    receipts: dict = field(default_factory=dict)  # {file name: text}, see submission.receipts
 
 
 def assignment(course, seed, limits=Limits(), isolated=True, notebooks=None):
@@ -79,7 +79,7 @@ def grade_submission(submission, assignment):
     """Grade one student's submission: a Graded with a row for every exercise of the assignment."""
     from .marks import marks  # here, because it imports nbgrader, which takes longer than to check one student's files
 
-    graded = Graded(submission.student, problems=list(submission.problems), timestamp=submission.timestamp)
+    graded = Graded(submission.student, problems=list(submission.problems), receipts=submission.receipts)
     with assignment.sandbox(submission) as sandbox:
         for name, released in assignment.released.items():
             content = submission.files.get(f"{name}.ipynb")

@@ -3,10 +3,12 @@
 What is wrong with it (files that are missing, left out or misnamed) is said in words, each with what to do.
 """
 
+import errno
 import hashlib
 import os
+import re
 import stat
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 
 import dateutil.parser
@@ -14,6 +16,7 @@ import dateutil.parser
 from .intake import LARGEST
 from .outputs import printable
 
+TIMESTAMP, SECRET = "timestamp.txt", "submission_secret.txt"  # written by `nbgrader submit`
 MOST_FILES = 200  # handed in besides the notebooks
 LARGEST_FILES = 4_000_000  # bytes, all of them together
 
@@ -25,7 +28,7 @@ class Submission:
     student: str
     files: dict
     problems: tuple = ()
-    timestamp: str | None = None  # when it was handed in, as text for nbgrader
+    receipts: dict = field(default_factory=dict)  # see `receipts`
 
     @property
     def helpers(self):
@@ -41,9 +44,9 @@ class Submission:
         return total.hexdigest()
 
 
-def collect(course, student):
-    """The Submission in submitted/STUDENT."""
-    folder, files, problems = course.submitted(student), {}, []
+def collect(course, student, folder=None):
+    """The Submission in a folder (a path; None for submitted/STUDENT)."""
+    folder, files, problems = folder or course.submitted(student), {}, []
     for name in (f"{name}.ipynb" for name in course.notebooks):
         if not os.path.lexists(folder / name):
             problems.append(f"{name}: not handed in; 0 points.")
@@ -72,18 +75,26 @@ def collect(course, student):
         else:
             files[name] = content
             folders |= above
-    timestamp, problem = _timestamp(folder)
-    return Submission(student, files, tuple(problems + [problem] if problem else problems), timestamp)
+    known_by, problem = receipts(folder)
+    return Submission(student, files, tuple(problems + [problem] if problem else problems), known_by)
 
 
-def _timestamp(folder):
-    """(when the work was handed in, as text for nbgrader, or None; what is wrong with timestamp.txt or None)"""
-    content, _ = read(folder / "timestamp.txt")
-    text = (content or b"").decode("utf-8", "replace").strip()
+def receipts(folder):
+    """({file name: text} of what nbgrader knows a submission in `folder` by, what is wrong with it or None)
+
+    timestamp.txt tells when it was handed in, submission_secret.txt is what its feedback is found by in the exchange;
+    there is neither when the files were put there by hand.
+    """
+    texts = {name: (read(folder / name)[0] or b"").decode("utf-8", "replace").strip() for name in (TIMESTAMP, SECRET)}
+    problem = None
+    if not re.fullmatch("[0-9a-f]{128}", texts[SECRET]):
+        del texts[SECRET]
     try:
-        return (text, None) if text and dateutil.parser.parse(text) else (None, None)
+        if not (texts[TIMESTAMP] and dateutil.parser.parse(texts[TIMESTAMP])):
+            del texts[TIMESTAMP]
     except (ValueError, OverflowError):
-        return None, f"timestamp.txt: {text[:60]!r} is no date; graded as if there were none."
+        problem = f"{TIMESTAMP}: {texts.pop(TIMESTAMP)[:60]!r} is no date; graded as if there were none."
+    return texts, problem
 
 
 def _paths(folder, problems):
@@ -106,13 +117,16 @@ def _paths(folder, problems):
             yield Path(here, name)
 
 
-def read(path):
-    """(the bytes of a regular file or None, what is wrong with it or None); follows no link, waits for nobody."""
-    if os.path.islink(path):
-        return None, "left out; it is a link"
+def read(path, folder=None):
+    """(the bytes of a regular file or None, what is wrong with it or None); follows no link, waits for nobody.
+
+    folder: the descriptor of the open folder that `path` is relative to
+    """
     try:
-        descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
+        descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK, dir_fd=folder)
     except OSError as error:
+        if error.errno == errno.ELOOP:
+            return None, "left out; it is a link"
         return None, f"left out; it cannot be opened ({error.strerror})"
     try:
         if not stat.S_ISREG(os.fstat(descriptor).st_mode):

@@ -35,6 +35,12 @@ REFUSED = (
     "namespaces (for Docker: --security-opt seccomp=unconfined, or run the grader outside the container)."
 )
 
+RESTRICTED = (
+    "bubblewrap is installed, but Ubuntu lets only root make namespaces ({reason}). Allow it: "
+    "sudo sysctl -w kernel.apparmor_restrict_unprivileged_userns=0 (for good: a file in /etc/sysctl.d with that setting)."
+)
+APPARMOR = Path("/proc/sys/kernel/apparmor_restrict_unprivileged_userns")
+
 EXPOSED = (
     "The course lies in a folder that notebooks can read in their sandbox (/usr, or that of Python itself), with its "
     "solutions and gradebook. Move it somewhere else, such as your home folder."
@@ -164,7 +170,8 @@ def problem():
         with Sandbox(Path(transform_lab.__file__).parent) as sandbox, sandbox.notebook():
             return None
     except NotStarted as error:
-        return REFUSED.format(reason=error)
+        restricted = APPARMOR.is_file() and APPARMOR.read_text().strip() == "1"
+        return (RESTRICTED if restricted else REFUSED).format(reason=error)
 
 
 def refusal(root):
