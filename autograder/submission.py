@@ -15,6 +15,7 @@ from .intake import LARGEST
 from .outputs import printable
 
 MOST_FILES = 200  # handed in besides the notebooks
+NOT_HANDED_IN = "{}: not handed in; 0 points."
 LARGEST_FILES = 4_000_000  # bytes, all of them together
 
 
@@ -46,7 +47,7 @@ def collect(course, student):
     folder, files, problems = course.submitted(student), {}, []
     for name in (f"{name}.ipynb" for name in course.notebooks):
         if not os.path.lexists(folder / name):
-            problems.append(f"{name}: not handed in; 0 points.")
+            problems.append(NOT_HANDED_IN.format(name))
             continue
         content, problem = read(folder / name)
         files[name] = content or b""  # where nothing can be read, the intake calls the notebook unreadable
