@@ -222,7 +222,7 @@ def _grade(here, students, protected, seed=None, jobs=os.cpu_count(), force=Fals
                 progress.update(bar, advance=1, counts=said)
         if with_feedback:
             _write_feedback(here, [student for student in students if student not in failed], jobs)
-        found = report.write(here, _recorded(here, writer))
+        found = report.write(here, writer)
     _show_class(found, students)
     unchanged = len(students) - len(fresh) - len(failed)
     drawn = f" (hidden cases drawn from seed {seed})" if fresh else ""
@@ -235,11 +235,6 @@ def _grade(here, students, protected, seed=None, jobs=os.cpu_count(), force=Fals
     ):
         console.print(f"  {what:14} {where.relative_to(here.root)}", markup=False)
     return failed
-
-
-def _recorded(here, writer):
-    """The students of the class report: those whose work is there and in the gradebook."""
-    return sorted(writer.students() & set(here.students()))
 
 
 def _write_feedback(here, students, jobs):
@@ -302,9 +297,9 @@ def report(options):
 
     here = course()
     with Writer(here) as writer:
-        students = _recorded(here, writer)
-    _show_class(report.write(here, students), students)
-    console.print(f"{here.reports.relative_to(here.root)}/index.html and verdicts.csv are written.")
+        found = report.write(here, writer)
+    _show_class(found, found)
+    console.print(f"{here.reports.relative_to(here.root)}/index.html, verdicts.csv and grades.csv are written.")
     return 0
 
 
@@ -319,7 +314,7 @@ def demo(options):
         with Writer(here) as writer:
             for student in filter(is_demo, {*here.students(), *writer.students()}):
                 writer.remove(student)
-            report.write(here, _recorded(here, writer))
+            report.write(here, writer)
         console.print("The demo's class is removed.")
         return 0
     submitted = here.root / "submitted"

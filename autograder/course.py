@@ -2,6 +2,7 @@
 
 import hashlib
 import os
+import re
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -147,6 +148,17 @@ class Released:
             for name, cell in self.cells.items()
             if cell.metadata.nbgrader.grade and name in EXERCISES
         }
+
+    def section(self, name):
+        """The heading (`## …`, as it is read) of the part of the notebook that leads to an exercise or a question."""
+        found = ""
+        for cell in self.notebook.cells:
+            if cell.metadata.get("nbgrader", {}).get("grade_id") in (name, f"{name}-solution"):
+                return found
+            if cell.cell_type == "markdown":
+                headings = re.findall(r"^## (?!Exercise)(.+)", cell.source, re.MULTILINE)
+                found = headings[-1].replace("`", "").strip() if headings else found
+        return ""
 
     @property
     def digest(self):

@@ -1,6 +1,9 @@
 """What a known mistake looks like: the Verdict on who makes it, and the scene that shows it."""
 
-from transform_lab import comparison
+from dataclasses import replace
+from functools import cache
+
+from transform_lab import comparison, panel
 from transform_lab.diagnosis import error_of, open_parts_of
 from transform_lab.verdict import Reply, examine
 
@@ -12,8 +15,19 @@ def picture(name, identifier):
 
     A still picture in HTML, of a public case; "" where there is nothing to draw, as for a truth value.
     """
-    scene = comparison.scene(committed(name, key(EXERCISES[name], PUBLIC_SEED), identifier))
+    scene = comparison.scene(committed(name, _public(name), identifier))
     return scene.still() if scene else ""
+
+
+def in_words(name, identifier):
+    """The same in plain text: what the function was given, what was expected, and what the misconception answers."""
+    verdict = replace(committed(name, _public(name), identifier), says="", hint="")
+    return panel.text(verdict).partition("\n")[2]
+
+
+def knows(name, identifier):
+    """Whether the exercise `name` has the misconception `identifier` (others, such as "hard-coded", any can have)."""
+    return identifier in {misconception.id for misconception in EXERCISES[name].misconceptions}
 
 
 def committed(name, exercise, identifier):
@@ -27,6 +41,12 @@ def committed(name, exercise, identifier):
         raise ValueError(f"{name} knows no misconception {identifier!r}; it knows {', '.join(dict.fromkeys(known))}")
     answers = iter([_reply(case, case["wrong"][known.index(identifier)]) for case in exercise["cases"]])
     return examine(name, exercise, lambda args, kwargs: next(answers))
+
+
+@cache
+def _public(name):
+    """The exercise `name` with its public cases, as plain data."""
+    return key(EXERCISES[name], PUBLIC_SEED)
 
 
 def _reply(case, wrong):

@@ -13,8 +13,19 @@ import sqlite3
 import time
 
 import nbformat
-from nbgrader.api import BaseCell, Comment, Grade, Gradebook, MissingEntry, SubmittedNotebook
+from nbgrader.api import (
+    Assignment,
+    BaseCell,
+    Comment,
+    Grade,
+    Gradebook,
+    MissingEntry,
+    Notebook,
+    SubmittedAssignment,
+    SubmittedNotebook,
+)
 from nbgrader.coursedir import CourseDirectory
+from nbgrader.plugins import CsvExportPlugin
 from nbgrader.preprocessors import AssignLatePenalties, SaveCells
 from sqlalchemy import Engine, event, select, update
 from sqlalchemy.exc import DatabaseError, OperationalError
@@ -91,6 +102,30 @@ class Writer:
             waiting = "yes" if submission.needs_manual_grade else "no"
             writer.writerow((submission.student_id, submission.score, submission.max_score, waiting))
         return table.getvalue()
+
+    def hand_graded(self):
+        """{student: (points given by hand, most of these, points in all, most in all)}, late penalties left out."""
+        names = ("written_score", "max_written_score", "score", "max_score")
+        return {
+            submission["student"]: tuple(submission[name] for name in names)
+            for submission in self.gradebook.submission_dicts(ASSIGNMENT)
+        }
+
+    def waiting(self):
+        """[(student, notebook, cell)] of the answers that wait for a human."""
+        columns = select(SubmittedAssignment.student_id, Notebook.name, BaseCell.name).select_from(Grade)
+        linked = columns.join(Grade.notebook).join(SubmittedNotebook.assignment).join(SubmittedAssignment.assignment)
+        linked = linked.join(SubmittedNotebook.notebook).join(Grade.cell)
+        wanted = linked.where(Assignment.name == ASSIGNMENT, Grade.needs_manual_grade)
+        return self.gradebook.db.execute(wanted.order_by(Notebook.name, BaseCell.name)).all()
+
+    def export(self, path):
+        """Write nbgrader's own CSV of the assignment's grades: what `nbgrader export` writes."""
+        fresh = path.with_name(f".{path.name}.new")
+        exporter = CsvExportPlugin(config=self.config)
+        exporter.to, exporter.assignment = str(fresh), [ASSIGNMENT]
+        exporter.export(self.gradebook)
+        fresh.replace(path)
 
     def remove(self, student):
         """Forget a student and all that was made for them."""

@@ -104,6 +104,8 @@ def grade_notebook(intake, released, assignment, sandbox, submission):
     intake.notebook.metadata[RECORD] = nbformat.from_dict(
         {
             "rows": [asdict(row) for row in rows(released, verdicts)],
+            "said": {name: [verdict.says, verdict.hint] for name, verdict in verdicts.items()},
+            "undone": [name for name, verdict in verdicts.items() if not verdict.done],
             "problems": [*submission.problems, *intake.problems],
             "seed": assignment.seed,
             "graded": datetime.now(UTC).isoformat(timespec="seconds"),

@@ -87,6 +87,7 @@ def _run(intake, released, keys, process, verdicts, skip):
                 run = process.run_cell(cell.source)
             except Ended as ended:
                 cell.outputs = [nbformat.from_dict(_stopped(ended))]
+                intake.say(released, f"cell {position + 1} had to be stopped: {ended.reason}")
                 return position
             cell.outputs = [nbformat.from_dict(output) for output in map(safe, run.outputs) if output]
             cell.execution_count = run.execution_count

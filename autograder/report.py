@@ -1,101 +1,160 @@
-"""The class report: verdicts.csv, and a page that says what the class understands and what it does not.
+"""The class report: a page for the instructor, and the tables behind it.
 
-Everything is read back from the autograded notebooks, so it is the same however they were graded.
+Everything is read back from the autograded notebooks and the gradebook, so it is the same however they were graded.
 """
 
 import csv
 import io
-from collections import Counter
+import os
+import re
+from collections import Counter, defaultdict
 from dataclasses import astuple, fields
-from datetime import UTC, datetime
+from datetime import datetime
+from urllib.parse import quote
 
 import jinja2
-from transform_lab.diagnosis import GENERAL
+from markupsafe import Markup, escape
 
+from . import examples, findings
 from .course import ASSIGNMENT, replace
-from .exercises import EXERCISES
-from .grading import missing, recorded
 from .judge import Row
 
 COLUMNS = ("student", *(field.name for field in fields(Row)))
+MOST_PICTURES = 10
+SHARED = 2  # students that make a misconception one of the class's, with a picture
+FORMGRADER = f"http://localhost:8888/formgrader/gradebook/{ASSIGNMENT}/"
 
 
-def verdicts(course, students):
-    """{student: [Row for each exercise]}, and {student: [what was odd, in words]}."""
-    found, problems = {}, {}
-    for student in students:
-        records = recorded(course, student)
-        found[student] = [
-            row
-            for name, released in course.notebooks.items()
-            for row in (records[name]["rows"] if name in records else missing(released))
-        ]
-        problems[student] = list(
-            dict.fromkeys(problem for record in records.values() for problem in record["problems"])
-        )
-    return found, problems
+def write(course, writer):
+    """Write index.html, verdicts.csv and grades.csv into reports/transforms/; {student: [Row]} they were made from.
 
-
-def write(course, students):
-    """Write reports/transforms/verdicts.csv and index.html; returns {student: [Row]} they were made from."""
-    found, problems = verdicts(course, students)
+    Shown are the students whose work is there and in the gradebook, which the gradebook.Writer knows.
+    """
+    handed_in, known = course.students(), writer.students()
+    works = {student: findings.work(course, student) for student in handed_in if student in known}
+    runs = findings.runs(works)
     course.reports.mkdir(parents=True, exist_ok=True)
+    _write_verdicts(course, works, runs[0].graded.timestamp() if runs else None)
+    writer.export(course.reports / "grades.csv")
+    since, before = _before(course)
+    shared, rare = _misunderstood(course, works)
+    waiting = [answer for answer in writer.waiting() if answer[0] in works]
+    page = _template(course).render(
+        assignment=ASSIGNMENT,
+        works=works,
+        runs=runs,
+        shared=shared,
+        rare=rare,
+        distribution=findings.distribution(works),
+        results=findings.results(works),
+        look=findings.look(works),
+        ungraded=sorted(set(handed_in) - known),
+        questions=_questions(course, waiting),
+        waiting=Counter(student for student, _, _ in waiting),
+        formgrader=FORMGRADER,
+        since=since,
+        changes=findings.changes(before, works) if before else None,
+        by_hand=writer.hand_graded(),
+    )
+    replace(course.reports / "index.html", page)
+    return {student: work.rows for student, work in works.items()}
+
+
+# --- the tables -----------------------------------------------------------------------------------------------------
+
+
+def _write_verdicts(course, works, graded):
+    """Write verdicts.csv; the one of an earlier grading is kept as before.csv.
+
+    graded: when the last of these notebooks was graded, in seconds; the file gets this as its date. So a report that is
+    made again from the same grading is compared with the same file as the first time.
+    """
+    path = course.reports / "verdicts.csv"
+    if graded and path.exists() and path.stat().st_mtime < graded:
+        path.replace(course.reports / "before.csv")
     table = io.StringIO()
     writer = csv.writer(table, lineterminator="\n")
     writer.writerow(COLUMNS)
-    writer.writerows((student, *astuple(row)) for student, rows in found.items() for row in rows)
-    replace(course.reports / "verdicts.csv", table.getvalue())
+    writer.writerows((student, *astuple(row)) for student, work in works.items() for row in work.rows)
+    replace(path, table.getvalue())
+    if graded:
+        os.utime(path, (graded, graded))
+
+
+def _before(course):
+    """(when the grading behind before.csv was, {student: {exercise: points}}); (None, {}) when there was none.
+
+    A file that somebody has damaged has nothing to compare with, either: (its date, {}).
+    """
+    path, scores = course.reports / "before.csv", defaultdict(dict)
+    if not path.exists():
+        return None, {}
+    since = datetime.fromtimestamp(path.stat().st_mtime).astimezone()
+    try:
+        with open(path, newline="", encoding="utf-8") as file:
+            for row in csv.DictReader(file):
+                scores[row["student"]][row["exercise"]] = float(row["score"])
+    except (ValueError, KeyError, TypeError, csv.Error):
+        return since, {}
+    return (since, dict(scores)) if scores else (None, {})
+
+
+# --- the page -------------------------------------------------------------------------------------------------------
+
+
+def _template(course):
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("autograder"), autoescape=True, trim_blocks=True, lstrip_blocks=True
     )
-    page = environment.get_template("report.html").render(
-        assignment=ASSIGNMENT,
-        made=datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
-        students={student: _total(rows) for student, rows in found.items()},
-        exercises=summary(found),
-        misunderstood=misunderstood(found),
-        look=look(found, problems),
-    )
-    replace(course.reports / "index.html", page)
-    return found
-
-
-def summary(found):
-    """For each exercise: (notebook, name, how many have all points, how many students, average share of the points)."""
-    lines = []
-    for column in zip(*found.values()):
-        shares = [row.score / row.max_score if row.max_score else 1.0 for row in column]
-        full = sum(share == 1 for share in shares)
-        lines.append((column[0].notebook, column[0].exercise, full, len(column), sum(shares) / len(shares)))
-    return lines
-
-
-def misunderstood(found):
-    """Misconceptions, the most frequent first: (id, exercise, how many students, what the answer shows, the hint)."""
-    rows = [row for rows in found.values() for row in rows if row.misconception]
-    times = Counter((identifier, row.exercise) for row in rows for identifier in row.misconception.split(";"))
-    lines = []
-    for (identifier, exercise), count in times.most_common():
-        sentences = {m.id: (m.says, m.hint) for m in EXERCISES[exercise].misconceptions}
-        lines.append((identifier, exercise, count, *(GENERAL | sentences).get(identifier, ("", ""))))
-    return lines
-
-
-def look(found, problems):
-    """Who needs a look: {student: [reasons in words]}."""
-    words = {
-        "timeout": "did not finish in time",
-        "killed": "had to be stopped: it used too much",
-        "unreadable": "is in a file that could not be read",
-        "missing": "is missing from what was handed in",
+    environment.filters |= {
+        "code": lambda text: Markup(re.sub(r"`([^`]+)`", r"<code>\1</code>", str(escape(text)))),
+        "points": lambda number: f"{round(number, 2):g}",
+        "time": lambda time: time.astimezone().strftime("%Y-%m-%d %H:%M %Z"),
     }
-    reasons = {}
-    for student, rows in found.items():
-        said = [f"{row.exercise} {words[row.status]}" for row in rows if row.status in words]
-        if said or problems.get(student):
-            reasons[student] = [*problems.get(student, ()), *said]
-    return reasons
+    notebooks = {name: notebook for notebook, released in course.notebooks.items() for name in released.points}
+    environment.globals["feedback"] = lambda student, exercise: _feedback(course, student, notebooks[exercise])
+    return environment.get_template("report.html")
 
 
-def _total(rows):
-    return sum(row.score for row in rows), sum(row.max_score for row in rows)
+def _feedback(course, student, notebook):
+    """The address of a student's feedback page as seen from the report; "" when there is none."""
+    page = course.feedback(student) / f"{notebook}.html"
+    return quote(f"../../{page.relative_to(course.root).as_posix()}") if page.exists() else ""
+
+
+def _misunderstood(course, works):
+    """The class's misconceptions in two lists: those that several students share, and the rest.
+
+    Each as (findings.Misunderstood, picture or words of an example in HTML, section to revisit, its address).
+    """
+    everything = findings.misunderstood(works)
+    shared = [found for found in everything if found.students >= SHARED][:MOST_PICTURES]
+    rare = everything[len(shared) :]
+    return (
+        [(found, _example(found), *_section(course, found.exercises[0][0])) for found in shared],
+        [(found, "", *_section(course, found.exercises[0][0])) for found in rare],
+    )
+
+
+def _example(found):
+    """An example of a misconception in the exercise where it is most frequent; "" for those that any exercise can have."""
+    exercise = found.exercises[0][0]
+    if not examples.knows(exercise, found.id):
+        return ""
+    if picture := examples.picture(exercise, found.id):
+        return Markup(picture)
+    return Markup("<pre>{}</pre>").format(examples.in_words(exercise, found.id))
+
+
+def _section(course, exercise):
+    """(the part of the notebooks that leads to an exercise, its address for JupyterLab)"""
+    notebook = next(name for name, released in course.notebooks.items() if exercise in released.points)
+    section = course.notebooks[notebook].section(exercise)
+    address = f"../../notebooks/{ASSIGNMENT}/{notebook}.ipynb"
+    return f"{notebook}: {section}", f"{quote(address)}#{quote(section.replace(' ', '-'))}"
+
+
+def _questions(course, waiting):
+    """[(notebook, question, how many answers wait for a human)], in order."""
+    counts = Counter((notebook, cell) for _, notebook, cell in waiting if notebook in course.notebooks)
+    return [(notebook, course.notebooks[notebook].section(cell), n) for (notebook, cell), n in counts.items()]

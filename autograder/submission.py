@@ -18,6 +18,7 @@ from .outputs import printable
 
 TIMESTAMP, SECRET = "timestamp.txt", "submission_secret.txt"  # written by `nbgrader submit`
 MOST_FILES = 200  # handed in besides the notebooks
+NOT_HANDED_IN = "{}: not handed in; 0 points."
 LARGEST_FILES = 4_000_000  # bytes, all of them together
 
 
@@ -49,7 +50,7 @@ def collect(course, student, folder=None):
     folder, files, problems = folder or course.submitted(student), {}, []
     for name in (f"{name}.ipynb" for name in course.notebooks):
         if not os.path.lexists(folder / name):
-            problems.append(f"{name}: not handed in; 0 points.")
+            problems.append(NOT_HANDED_IN.format(name))
             continue
         content, problem = read(folder / name)
         files[name] = content or b""  # where nothing can be read, the intake calls the notebook unreadable

@@ -370,20 +370,27 @@ def test_feedback_on_hidden_cases_has_no_numbers():
 
 
 @pytest.mark.parametrize(
-    "outcome, status, words",
+    "outcome, why, status, words",
     [
-        ("timeout", "timeout", "did not finish in time"),
-        ("killed", "killed", "used too much"),
-        ("undefined", "error", "There is no function called chain"),
-        ("not done", "error", "Not done yet"),
+        ("timeout", "", "timeout", "did not finish in time."),
+        ("timeout", "the notebook's time was over", "timeout", "did not finish in time: the notebook's time was over."),
+        ("killed", "", "killed", "used too much."),
+        (
+            "killed",
+            "it used more than 2 GB of memory",
+            "killed",
+            "had to be stopped: it used more than 2 GB of memory.",
+        ),
+        ("undefined", "", "error", "There is no function called chain"),
+        ("not done", "", "error", "Not done yet"),
     ],
 )
-def test_what_ends_an_examination(outcome, status, words):
+def test_what_ends_an_examination(outcome, why, status, words):
     calls = []
 
     def answer(args, kwargs):
         calls.append(args)
-        return Reply(outcome)
+        return Reply(outcome, error=why)
 
     verdict = examine("chain", public("chain"), answer)
     assert (verdict.status, verdict.credit, len(calls)) == (status, 0.0, 1)

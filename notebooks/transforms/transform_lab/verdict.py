@@ -31,7 +31,7 @@ class Reply:
     outcome: str
     value: object = None  # the answer, as plain data
     arguments: object = None  # the positional and keyword arguments after the call, as plain data: [list, dict]
-    error: str = ""  # the student's own error, in one line
+    error: str = ""  # the student's own error, or why the call had to be stopped; in one line
     printed: str = ""  # the beginning of what it printed
 
 
@@ -121,9 +121,11 @@ def _unfinished(name, reply, case):
         hint = "Run the cell that defines it, and keep its name as it was."
         return Verdict(name, "error", says=f"There is no function called {name}.", hint=hint)
     if reply.outcome == "timeout":
-        return Verdict(name, "timeout", says="Your function did not finish in time.", hint=LOOP, failing=case)
+        why = f": {reply.error}" if reply.error else ""
+        return Verdict(name, "timeout", says=f"Your function did not finish in time{why}.", hint=LOOP, failing=case)
+    says = f"Your function had to be stopped: {reply.error or 'it used too much'}."
     hint = "Look for a loop or a list that grows without end."
-    return Verdict(name, "killed", says="Your function had to be stopped: it used too much.", hint=hint, failing=case)
+    return Verdict(name, "killed", says=says, hint=hint, failing=case)
 
 
 def compare(returns, case, reply):
