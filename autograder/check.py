@@ -3,6 +3,7 @@
 import re
 
 from transform_lab import panel
+from transform_lab.verdict import Verdict
 
 from .grading import assignment, grade_notebook, missing, new_seed
 from .intake import restore
@@ -15,7 +16,7 @@ LONGEST = 300  # characters in a cell of the table
 def check_files(course, paths, seed=None, isolated=True):
     """Grade notebook files, or all that is in one folder.
 
-    Returns ([(Row, what was found in words), …], [files that cannot be graded], [what else there is to say]).
+    Returns ([(Row, Verdict), …], [files that cannot be graded, in words], [what else there is to say]).
     In a folder, notebooks that are not there count as missing. Links are not followed: a student's repository could
     hold one to the solutions. The students' package is the course's own.
     """
@@ -32,12 +33,12 @@ def check_files(course, paths, seed=None, isolated=True):
         for name in wanted:
             released, content = course.notebooks[name], submission.files.get(f"{name}.ipynb")
             if content is None:
-                found += [(row, "Not handed in.") for row in missing(released)]
+                found += [(row, Verdict(row.exercise, row.status, says="Not handed in.")) for row in missing(released)]
                 continue
             intake = restore(content, released)
             verdicts = grade_notebook(intake, released, against, sandbox, submission)
             said += intake.problems
-            found += [(row, panel.summary(verdicts[row.exercise])) for row in rows(released, verdicts)]
+            found += [(row, verdicts[row.exercise]) for row in rows(released, verdicts)]
     return found, refused, said
 
 
@@ -76,8 +77,8 @@ def markdown(found, lines):
     """What `check_files` found as GitHub shows it (text): the points, a table, and the lines that there are to say."""
     earned, most = points(found)
     text = [f"**{earned:g} of {most:g} points**", "", "| notebook | exercise | points | |", "|---|---|---|---|"]
-    for row, says in found:
-        cells = row.notebook, row.exercise, f"{row.score:g} of {row.max_score:g}", says
+    for row, verdict in found:
+        cells = row.notebook, row.exercise, f"{row.score:g} of {row.max_score:g}", panel.summary(verdict)
         text.append(f"| {' | '.join(map(_plain, cells))} |")
     text += ["", *(f"- {_plain(line)}" for line in lines)]
     return "\n".join(text) + "\n"

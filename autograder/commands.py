@@ -5,7 +5,6 @@ import difflib
 import os
 import subprocess
 import sys
-import zipfile
 from collections import Counter
 from contextlib import nullcontext
 from pathlib import Path
@@ -14,7 +13,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from .course import ASSIGNMENT, Course, CourseError
+from .course import ASSIGNMENT, Course, CourseError, replace
 
 console = Console(highlight=False, soft_wrap=True)
 errors = Console(stderr=True, highlight=False, soft_wrap=True)
@@ -84,9 +83,23 @@ def _parser():
     sub.add_argument("--summary", type=Path, metavar="FILE", help="append the table as Markdown (for GitHub Actions)")
     sandbox_options(sub)
     add("doctor", doctor, "say what protects grading on this machine, and what does not")
-    sub = add("package", package, "make a zip of the notebooks for a learning management system")
-    sub.add_argument("--output", type=Path, default=Path(f"{ASSIGNMENT}.zip"))
-    sub = add("export", export, "write the gradebook's points as CSV")
+    sub = add(
+        "package", package, "make zips: the notebooks for a learning management system, the grader for Gradescope"
+    )
+    sub.add_argument(
+        "--output",
+        type=Path,
+        default=Path(),
+        metavar="PATH",
+        help="the folder to put both into (default: this one), or a file named *.zip for that of the notebooks alone",
+    )
+    sub = add("export", export, "write the gradebook's points as CSV: as a table, or as Canvas or Moodle imports them")
+    sub.add_argument(
+        "--format", choices=("plain", "canvas", "moodle"), default="plain", help="columns (default: plain)"
+    )
+    sub.add_argument(
+        "--column", metavar="NAME", default=ASSIGNMENT, help=f"the assignment's name in the LMS (default: {ASSIGNMENT})"
+    )
     sub.add_argument("--output", type=Path, default=Path("-"), help="a file (default: print)")
     add("test", test, "run all tests; other options are passed on to pytest")
     return parser
@@ -133,15 +146,22 @@ def release(options):
 
 
 def package(options):
-    """The same bytes for the same notebooks: sorted names, one date."""
-    contents = course().release_contents()
-    if not contents:
-        raise CourseError("There is nothing to package: run `python3 -m autograder release` first.")
-    with zipfile.ZipFile(options.output, "w", zipfile.ZIP_DEFLATED) as archive:
-        for path, content in contents.items():
-            entry = zipfile.ZipInfo(f"{ASSIGNMENT}/{path}", (1980, 1, 1, 0, 0, 0))
-            archive.writestr(entry, content, zipfile.ZIP_DEFLATED)
-    console.print(f"{options.output}: {len(contents)} files.", markup=False)
+    from .package import for_gradescope, for_students, write
+
+    here = course()
+    folder, only = options.output, options.output.suffix == ".zip" and not options.output.is_dir()
+    path = folder if only else folder / f"{ASSIGNMENT}.zip"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write(path, for_students(here))
+    console.print(f"{path}: the notebooks, for students: in an LMS, on a web page, by mail.", markup=False)
+    if not only:
+        path = folder / f"{ASSIGNMENT}-gradescope.zip"
+        write(path, for_gradescope(here))
+        console.print(
+            f"{path}: the autograder, for a programming assignment on Gradescope (base image: Ubuntu 24.04 or newer). "
+            "It holds the solutions: keep it to yourself.",
+            markup=False,
+        )
     return 0
 
 
@@ -343,6 +363,8 @@ def check(options):
     here = course()
     ForkServer.serving(here.package)  # loads while the rest is loaded here
 
+    from transform_lab import panel
+
     from .check import check_files, markdown, points
 
     protected = _protection(here, options.unsafe_no_sandbox)
@@ -350,8 +372,9 @@ def check(options):
     for line in refused + said:
         errors.print(line, markup=False)
     table = Table("notebook", "exercise", "points", "", box=None, pad_edge=False)
-    for row, says in found:
-        _add_row(table, row.notebook, row.exercise, f"{row.score:g} of {row.max_score:g}", says)
+    for row, verdict in found:
+        cells = row.notebook, row.exercise, f"{row.score:g} of {row.max_score:g}", panel.summary(verdict)
+        _add_row(table, *cells)
     earned, most = points(found)
     console.print(table)
     console.print(f"{earned:g} of {most:g} points")
@@ -371,14 +394,23 @@ def doctor(options):
 
 
 def export(options):
+    from . import export
     from .gradebook import Writer
 
-    with Writer(course()) as writer:
-        text = writer.totals()
+    here = course()
+    with Writer(here) as writer:
+        found = export.collect(writer.gradebook)
+        text = export.text(here, writer.gradebook, found, options.format, options.column)
+        lines = list(export.remarks(found, options.format))
     if str(options.output) == "-":
         sys.stdout.write(text)
+    elif not options.output.parent.is_dir():
+        raise CourseError(f"{options.output}: not written; there is no folder {options.output.parent}.")
     else:
-        options.output.write_text(text, encoding="utf-8")
+        replace(options.output, text)
+        console.print(f"{options.output} is written.", markup=False)
+    for line in lines:
+        errors.print(line, markup=False)
     return 0
 
 

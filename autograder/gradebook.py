@@ -5,8 +5,6 @@ instead of cell by cell.
 """
 
 import copy
-import csv
-import io
 import logging
 import shutil
 import sqlite3
@@ -92,16 +90,6 @@ class Writer:
                 time.sleep(0.5)
         shutil.rmtree(self.course.feedback(graded.student), ignore_errors=True)  # made anew, or it would be out of date
         self._write_files(graded)
-
-    def totals(self):
-        """CSV text: each student's points, automatic and manual, as the gradebook has them."""
-        table = io.StringIO()
-        writer = csv.writer(table, lineterminator="\n")
-        writer.writerow(("student", "score", "max_score", "needs_manual_grade"))
-        for submission in sorted(self.gradebook.assignment_submissions(ASSIGNMENT), key=lambda found: found.student_id):
-            waiting = "yes" if submission.needs_manual_grade else "no"
-            writer.writerow((submission.student_id, submission.score, submission.max_score, waiting))
-        return table.getvalue()
 
     def hand_graded(self):
         """{student: (points given by hand, most of these, points in all, most in all)}, late penalties left out."""

@@ -36,7 +36,7 @@ def restore(content, released):
         notebook = _parse(content)
     except Unreadable as unreadable:
         intake = Intake(copy.deepcopy(released.notebook), dict.fromkeys(released.points, "unreadable"))
-        intake.say(released, f"it cannot be read: {unreadable}; ask the student for the file again")
+        intake.say(released, f"it cannot be read: {unreadable}; it has to be handed in again")
         intake.notebook.cells.insert(0, _note(released, f"**This notebook could not be read:** {unreadable}."))
         return intake
     intake = Intake(notebook)
@@ -150,7 +150,7 @@ def _add_missing(intake, released, grade_id, original):
     if grade_id in released.points:
         intake.statuses[grade_id] = "missing"
         intake.say(
-            released, f"the test cell of {grade_id} is missing: 0 points; put it back into the file and grade again"
+            released, f"the test cell of {grade_id} is missing: 0 points; it has to be in the file, as it was given out"
         )
     else:
         intake.say(released, f"the cell {grade_id} is missing, or has lost its nbgrader data; an empty one was added")

@@ -6,7 +6,6 @@ import os
 import shutil
 import subprocess
 import sys
-import zipfile
 from pathlib import Path
 
 import nbformat
@@ -280,15 +279,6 @@ def test_doctor(course, sandboxed, without_bubblewrap):
     assert "ok    bubblewrap works" in said
     code, said = run(course, "doctor", path=without_bubblewrap)
     assert code == 1 and "LOOK  No sandbox" in said
-
-
-def test_the_package_is_the_same_each_time(course, tmp_path):
-    for name in ("one.zip", "two.zip"):
-        code, said = run(course, "package", "--output", str(tmp_path / name))
-        assert code == 0, said
-    assert (tmp_path / "one.zip").read_bytes() == (tmp_path / "two.zip").read_bytes()
-    names = zipfile.ZipFile(tmp_path / "one.zip").namelist()
-    assert "transforms/1_rotation.ipynb" in names and "transforms/transform_lab/key.json" in names
 
 
 def test_release_says_what_changed(course):

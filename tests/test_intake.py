@@ -62,7 +62,7 @@ def test_a_file_that_is_no_notebook_is_unreadable(released, content, reason):
     intake = restore(content, released)
     assert set(intake.statuses) == set(released.points)
     assert set(intake.statuses.values()) == {"unreadable"}
-    assert reason in intake.problems[0] and "ask the student" in intake.problems[0]
+    assert reason in intake.problems[0] and "handed in again" in intake.problems[0]
     assert "could not be read" in intake.notebook.cells[0].source
     nbformat.validate(intake.notebook)
 

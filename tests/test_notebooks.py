@@ -6,6 +6,7 @@ import nbformat
 import pytest
 from conftest import ROOT
 from nbclient import NotebookClient
+from transform_lab import panel
 
 from autograder.check import check_files
 from autograder.course import Course
@@ -60,7 +61,7 @@ def test_the_untouched_notebooks_earn_nothing_in_the_sandbox(sandboxed):
     found, refused, mended = check_files(Course(ROOT), RELEASED)
     assert [row.score for row, _ in found] == [0.0] * 16
     assert {row.status for row, _ in found} == {"error"}
-    assert {says for _, says in found} == {"Not done yet."}
+    assert {panel.summary(verdict) for _, verdict in found} == {"Not done yet."}
     assert refused == mended == []
 
 

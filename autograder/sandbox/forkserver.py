@@ -165,6 +165,7 @@ def _notebook(libc, executor, rules, connection):
             resource.setrlimit(getattr(resource, name), (amount, amount))
         if settings["isolated"]:
             _become_nobody(libc, settings["number"])
+            _die_with_parent(libc)  # another user's process no longer would
             rules.load()
         os.environ.update(settings["environment"])
         os.chdir(settings["folder"])

@@ -17,9 +17,10 @@ from transform_lab import codec
 from transform_lab.verdict import Reply
 
 from ..outputs import printable
+from .account import Account
 from .bubblewrap import COURSE, PATIENCE, Namespaces, NotStarted, copy_code
 from .channel import Channel, Closed, Garbled, Late
-from .watch import Watch
+from .watch import UserWatch, Watch
 
 NOBODY = 100_000  # when the grader is root, each notebook runs as a user of its own: this number and up
 GLANCE = 0.25  # seconds between two looks at what a sandbox uses
@@ -138,7 +139,8 @@ class Sandbox:
 
     package: the folder of the students' package `transform_lab`
     files: what the student handed in besides notebooks, {relative path: bytes}
-    isolated: False runs the student's code unprotected, as this very user (for the demo, or when asked to)
+    isolated: True keeps it in namespaces of its own; "user" only makes it a user of its own (see account.py); False
+        runs the student's code unprotected, as this very user (for the demo, or when asked to)
     """
 
     def __init__(self, package, files=None, limits=Limits(), isolated=True):
@@ -166,14 +168,18 @@ class NotebookProcess:
     def __init__(self, sandbox, deadline):
         self.limits, self.deadline = sandbox.limits, deadline
         self.gone, self.glanced = False, time.monotonic()  # gone: whether its process had to be stopped, or died
-        self.namespaces = self.folder = self.pid = self.handle = self.watch = None
+        self.namespaces = self.account = self.folder = self.pid = self.handle = self.watch = None
         connection, inside = socket.socketpair()
         connection.settimeout(PATIENCE)
         self.channel = Channel(connection)
         settings = {"files": sandbox.files, "isolated": sandbox.isolated}
         server = ForkServer.serving(sandbox.package)
         try:
-            if sandbox.isolated:
+            if sandbox.isolated == "user":
+                self.account = Account(server.code / sandbox.package.name)
+                settings |= {"limits": self.limits.resources(), "number": self.account.number}
+                settings |= {"folder": str(self.account.folder), "environment": {"HOME": str(self.account.home)}}
+            elif sandbox.isolated:
                 self.namespaces = Namespaces(server.code)
                 settings |= {"limits": self.limits.resources(), "number": NOBODY + self.namespaces.pid}
                 settings |= {"folder": str(COURSE / "transforms"), "environment": {"HOME": "/tmp"}}
@@ -205,6 +211,8 @@ class NotebookProcess:
         self.pid, self.handle = int(message[1:]), handles[0] if handles else None
         if self.namespaces:
             self.watch = Watch(self.namespaces.pid, self.pid, self.limits)
+        elif self.account:
+            self.watch = UserWatch(self.account.number, self.pid, self.limits)
 
     def __enter__(self):
         return self
@@ -213,6 +221,8 @@ class NotebookProcess:
         self.channel.connection.close()
         if self.namespaces:
             self.namespaces.close()
+        elif self.account:
+            self.account.close()
         elif self.pid:
             try:
                 os.killpg(self.pid, signal.SIGKILL)

@@ -3,8 +3,10 @@
 import os
 from pathlib import Path
 
-from .bubblewrap import WRITABLE
+from .account import processes
+from .bubblewrap import FOLDER, WRITABLE
 
+PUBLIC = ("/tmp", "/var/tmp", "/dev/shm")  # where any user may write; a notebook's own folder lies in the first
 TICK = 1 / os.sysconf("SC_CLK_TCK")  # seconds; the unit of processor time in /proc
 
 
@@ -50,6 +52,43 @@ class Watch:
         except OSError:
             return 0
         return sum(count.f_files - count.f_ffree for count in counts)
+
+
+class UserWatch(Watch):
+    """Of all processes of a user, and of the user's files wherever anybody may write.
+
+    number: the user's; notebook: the number of the notebook's own process
+    """
+
+    def __init__(self, number, notebook, limits):
+        super().__init__(notebook, notebook, limits)
+        self.number, self.size = number, 0
+
+    def excess(self):
+        found = super().excess()
+        if not found and self.size > FOLDER * len(WRITABLE):
+            return f"more than {FOLDER * len(WRITABLE) / 1e6:g} MB of files"
+        return found
+
+    def _processes(self):
+        return processes(self.number)
+
+    def _files(self):
+        """How many there are; their size, too, is added up."""
+        count, self.size, waiting = 0, 0, [folder for folder in PUBLIC if os.path.isdir(folder)]
+        while waiting and count <= self.limits.files:
+            try:
+                with os.scandir(waiting.pop()) as entries:
+                    for entry in entries:
+                        known = entry.stat(follow_symlinks=False)
+                        if known.st_uid == self.number:
+                            count, self.size = count + 1, self.size + 512 * known.st_blocks
+                        may_write = known.st_uid == self.number or known.st_mode & 0o002
+                        if may_write and entry.is_dir(follow_symlinks=False):
+                            waiting.append(entry.path)
+            except OSError:
+                continue  # it has been removed meanwhile
+        return count
 
 
 def _memory(process):
