@@ -34,3 +34,6 @@ c.Autograde.autograde_preprocessors = [
 ]
 # What students write is shown in feedback and formgrader without scripts and without anything from elsewhere.
 c.HTMLExporter.filters = {"markdown2html": "autograder.pages.markdown2html"}
+# Feedback pages that need no network, say a mistake in numbers and frames, and stay small.
+c.GenerateFeedback.exporter_class = "autograder.pages.Feedback"
+c.GenerateFeedback.preprocessors = ["autograder.pages.Grades", "nbconvert.preprocessors.CSSHTMLHeaderPreprocessor"]

@@ -2,6 +2,7 @@
 
 import hashlib
 import os
+import re
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -147,6 +148,26 @@ class Released:
             for name, cell in self.cells.items()
             if cell.metadata.nbgrader.grade and name in EXERCISES
         }
+
+    @property
+    def title(self):
+        """The notebook's first heading."""
+        return next(iter(self._headings()), self.name)
+
+    def section(self, exercise):
+        """The heading of the section that leads to an exercise, or of a question; "" when there is none."""
+        before = self.cells.get(f"{exercise}-solution", self.cells[exercise])
+        return next((text for text in reversed(self._headings(before)) if not text.startswith("Exercise:")), "")
+
+    def _headings(self, before=None):
+        """The texts of the Markdown headings above a cell, or of all."""
+        found = []
+        for cell in self.notebook.cells:
+            if cell is before:
+                break
+            if cell.cell_type == "markdown":
+                found += re.findall(r"^#{1,6} +(.*?) *$", cell.source, re.MULTILINE)
+        return found
 
     @property
     def digest(self):

@@ -13,7 +13,17 @@ import sqlite3
 import time
 
 import nbformat
-from nbgrader.api import BaseCell, Comment, Grade, Gradebook, MissingEntry, SubmittedNotebook
+from nbgrader.api import (
+    Assignment,
+    BaseCell,
+    Comment,
+    Grade,
+    Gradebook,
+    MissingEntry,
+    Notebook,
+    SubmittedAssignment,
+    SubmittedNotebook,
+)
 from nbgrader.coursedir import CourseDirectory
 from nbgrader.preprocessors import AssignLatePenalties, SaveCells
 from sqlalchemy import Engine, event, select, update
@@ -21,6 +31,7 @@ from sqlalchemy.exc import DatabaseError, OperationalError
 
 from .api import settings
 from .course import ASSIGNMENT, CourseError, replace
+from .marks import Grades, Points
 
 PATIENCE = 60.0  # seconds to wait for a database that somebody else has locked
 
@@ -80,6 +91,30 @@ class Writer:
                 time.sleep(0.5)
         shutil.rmtree(self.course.feedback(graded.student), ignore_errors=True)  # made anew, or it would be out of date
         self._write_files(graded)
+
+    def grades(self):
+        """What students are told of their points, {student: {notebook: Grades}}, in three queries for the whole class."""
+        found = {}
+
+        def of(table, *columns):
+            whose = select(SubmittedAssignment.student_id, Notebook.name, *columns).select_from(table)
+            if table is not SubmittedNotebook:
+                whose = whose.join(SubmittedNotebook, SubmittedNotebook.id == table.notebook_id)
+                whose = whose.join(BaseCell, BaseCell.id == table.cell_id)
+            whose = whose.join(SubmittedAssignment, SubmittedAssignment.id == SubmittedNotebook.assignment_id)
+            whose = whose.join(Assignment, Assignment.id == SubmittedAssignment.assignment_id)
+            whose = whose.join(Notebook, Notebook.id == SubmittedNotebook.notebook_id)
+            for student, notebook, *values in self.gradebook.db.execute(whose.where(Assignment.name == ASSIGNMENT)):
+                yield found.setdefault(student, {}).setdefault(notebook, Grades()), *values
+
+        for grades, penalty in of(SubmittedNotebook, SubmittedNotebook.late_submission_penalty):
+            grades.penalty = penalty or 0.0
+        for grades, cell, *points in of(Grade, BaseCell.name, Grade.score, Grade.max_score, Grade.needs_manual_grade):
+            grades.cells[cell] = Points(*points)
+        for grades, cell, comment in of(Comment, BaseCell.name, Comment.comment):
+            if comment:
+                grades.comments[cell] = comment
+        return found
 
     def totals(self):
         """CSV text: each student's points, automatic and manual, as the gradebook has them."""
