@@ -40,3 +40,6 @@ c.HTMLExporter.filters = {"markdown2html": "autograder.pages.markdown2html"}
 # Students write into the exchange: what they put there neither fetches files of the instructor's nor stops the others.
 c.ExchangeFactory.collect = "autograder.exchange.Collect"
 c.ExchangeFactory.release_feedback = "autograder.exchange.ReleaseFeedback"
+# Feedback pages that need no network, say a mistake in numbers and frames, and stay small.
+c.GenerateFeedback.exporter_class = "autograder.pages.Feedback"
+c.GenerateFeedback.preprocessors = ["autograder.pages.Grades", "nbconvert.preprocessors.CSSHTMLHeaderPreprocessor"]

@@ -71,7 +71,7 @@ def _parser():
     sub.add_argument(
         "--scheduler", metavar="ADDRESS", help="grade on the workers of a Dask scheduler, such as tcp://host:8786"
     )
-    sub.add_argument("--no-feedback", action="store_true", help="leave out nbgrader's feedback pages")
+    sub.add_argument("--no-feedback", action="store_true", help="leave out the feedback pages")
     sandbox_options(sub)
     add("report", report, "write the class report from what is graded")
     sub = add(
@@ -241,7 +241,9 @@ def _grade(here, students, protected, seed=None, jobs=os.cpu_count(), force=Fals
                 said += "".join(f", {count} {status}" for status, count in counts.items() if status != "graded")
                 progress.update(bar, advance=1, counts=said)
         if with_feedback:
-            _write_feedback(here, [student for student in students if student not in failed], jobs)
+            grades = writer.grades()
+            wanted = {name: grades[name] for name in students if name not in failed and name in grades}
+            _write_feedback(here, wanted, jobs)
         found = report.write(here, writer)
     _show_class(found, students)
     unchanged = len(students) - len(fresh) - len(failed)
@@ -257,10 +259,10 @@ def _grade(here, students, protected, seed=None, jobs=os.cpu_count(), force=Fals
     return failed
 
 
-def _write_feedback(here, students, jobs):
+def _write_feedback(here, grades, jobs):
     from . import feedback
 
-    wanted = [student for student in students if not feedback.is_complete(here, student)]
+    wanted = {student: told for student, told in grades.items() if not feedback.is_complete(here, student, told)}
     with _progress() as progress:
         bar = progress.add_task("feedback", total=len(wanted), counts="")
         for student, problem in feedback.generate(here, wanted, jobs):

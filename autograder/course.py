@@ -161,5 +161,20 @@ class Released:
         return ""
 
     @property
+    def title(self):
+        """The notebook's first heading."""
+        return next(iter(self._headings()), self.name)
+
+    def _headings(self, before=None):
+        """The texts of the Markdown headings above a cell, or of all."""
+        found = []
+        for cell in self.notebook.cells:
+            if cell is before:
+                break
+            if cell.cell_type == "markdown":
+                found += re.findall(r"^#{1,6} +(.*?) *$", cell.source, re.MULTILINE)
+        return found
+
+    @property
     def digest(self):
         return hashlib.sha256(self.text.encode()).hexdigest()

@@ -1,17 +1,42 @@
-"""nbgrader's feedback pages: one HTML file for each graded notebook, made for many students at once."""
+"""What is given back to students: nbgrader's page for each notebook, and index.html, which sums them up.
 
+`nbgrader generate_feedback` alone makes the notebooks' pages, and no summary.
+"""
+
+import hashlib
+import html
+import json
 import os
+import re
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import asdict
+from functools import cache
+from urllib.parse import quote
+
+import jinja2
+from markupsafe import Markup
+from transform_lab import panel
 
 from . import api
-from .course import ASSIGNMENT, CourseError
+from .course import ASSIGNMENT, CourseError, replace
+from .grading import recorded
+from .marks import Grades, Points
+from .pages import markdown2html, points
 from .workers import end_with_parent
 
+SUMMARY = "index.html"
 
-def is_complete(course, student):
-    """Whether there is a whole page for each of the student's graded notebooks."""
+
+def is_complete(course, student, grades):
+    """Whether there is a whole page for each of the student's graded notebooks, and a summary of these grades.
+
+    grades: {notebook: Grades}; one that was given or changed by hand asks for new pages
+    """
     pages = [course.feedback(student) / f"{path.stem}.html" for path in course.autograded(student).glob("*.ipynb")]
-    return all(_is_whole(page) for page in pages)
+    summary = course.feedback(student) / SUMMARY
+    return (
+        not pages or all(map(_is_whole, [*pages, summary])) and _digest(grades) in summary.read_text(encoding="utf-8")
+    )
 
 
 def _is_whole(page):
@@ -24,15 +49,104 @@ def _is_whole(page):
         return False
 
 
-def generate(course, students, jobs):
-    """Write feedback/STUDENT/…; yields (student, None or what went wrong) as they are done."""
+def _digest(grades):
+    """Stands in the summary for the grades it was made from."""
+    told = {name: asdict(of) for name, of in grades.items()}
+    return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
+
+
+def generate(course, grades, jobs):
+    """Write feedback/STUDENT/… for {student: {notebook: Grades}}; yields (student, None or what went wrong) as they are done."""
     with ProcessPoolExecutor(jobs, initializer=end_with_parent) as pool:
-        yield from zip(students, pool.map(_one, [course] * len(students), students))
+        yield from zip(grades, pool.map(_one, [course] * len(grades), grades, grades.values()))
 
 
-def _one(course, student):
+def _one(course, student, grades):
     try:
         api.call(course, "generate_feedback", ASSIGNMENT, student)
+        replace(course.feedback(student) / SUMMARY, summary(course, student, grades))
     except CourseError as error:
         return str(error)
     return None
+
+
+def summary(course, student, grades):
+    """The text of index.html: points, and for what is not right what was found, what helps, and what to read again."""
+    records = recorded(course, student)
+    notebooks = [
+        _notebook(released, grades.get(name, Grades()), records.get(name))
+        for name, released in course.notebooks.items()
+    ]
+    wrong = (cell for notebook in notebooks for cell in notebook["exercises"] if cell["link"] and not cell["right"])
+    template = _environment().get_template("summary.html")
+    return template.render(
+        assignment=ASSIGNMENT,
+        notebooks=notebooks,
+        earned=sum(notebook["earned"] for notebook in notebooks),
+        most=sum(notebook["most"] for notebook in notebooks),
+        waiting=sum(cell["waiting"] for notebook in notebooks for cell in notebook["questions"]),
+        begin=next(wrong, None),
+        digest=_digest(grades),
+    )
+
+
+@cache
+def _environment():
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("autograder"), autoescape=True, trim_blocks=True, lstrip_blocks=True
+    )
+    environment.filters["points"] = points
+    environment.filters["with_code"] = lambda sentence: Markup(panel.with_code(sentence))
+    environment.filters["inline"] = lambda heading: Markup(_heading(heading)[1])
+    return environment
+
+
+def _notebook(released, grades, record):
+    """One notebook as the template takes it; `record` is None for one that was not handed in."""
+    page = f"{quote(released.name)}.html" if record else ""
+    graded = [name for name, cell in released.cells.items() if cell.metadata.nbgrader.grade]
+    cells = {name: _cell(name, released, grades, record, page) for name in graded}
+    return {
+        "title": released.title,
+        "page": page,
+        "earned": max(0.0, sum(cell["earned"] for cell in cells.values()) - grades.penalty),
+        "most": sum(cell["most"] for cell in cells.values()),
+        "penalty": grades.penalty,
+        "exercises": [cell for name, cell in cells.items() if name in released.points],
+        "questions": [cell for name, cell in cells.items() if name not in released.points],
+    }
+
+
+def _cell(name, released, grades, record, page):
+    """One exercise or question as the template takes it."""
+    most = float(released.cells[name].metadata.nbgrader.points)
+    told = grades.cells.get(name, Points(0.0, most, False))
+    section = released.section(name)
+    return {
+        "name": name,
+        "earned": told.earned,
+        "most": most,
+        "right": told.earned >= most,
+        "waiting": told.waiting,
+        "comment": grades.comments.get(name, ""),
+        "mistakes": _mistakes(record, name),
+        "link": page and f"{page}#{quote(name)}",
+        "section": re.sub(r" \(\d+ points?\b.*\)$", "", section),
+        "again": page and f"{page}#{quote(_heading(section)[0])}",
+    }
+
+
+def _mistakes(record, name):
+    """[(what was found, what helps), …] of an exercise; none in a damaged record, which costs only these."""
+    try:
+        return [(str(says), str(hint)) for says, hint in record["mistakes"][name]]
+    except (KeyError, TypeError, ValueError):
+        return []
+
+
+@cache
+def _heading(text):
+    """A heading as the notebook's page has it: the id to jump to, and its text as HTML."""
+    made = markdown2html({}, f"# {text}")
+    found = re.fullmatch(r'<h1 id="(.*?)">(.*)<a .*</h1>\s*', made, re.DOTALL)
+    return (html.unescape(found[1]), found[2]) if found else ("", html.escape(text))

@@ -20,7 +20,7 @@ MOST_BARS = 10  # of the distribution of points, besides the one for all points
 class Work:
     """What is recorded of one student's work.
 
-    rows: a Row for each exercise; said: {exercise: (what the answer shows, the hint)}, in the words the student reads
+    rows: a Row for each exercise; said: {exercise: [(what the answer shows, the hint) for each mistake]}, as the student reads
     undone: exercises that nobody has filled in; absent: notebooks that were not handed in
     problems: what was odd about the files, in words; runs: {seed of the hidden cases: when it was used last}
     """
@@ -57,7 +57,7 @@ def work(course, student):
             continue
         record = records[name]
         found.rows += record["rows"]
-        found.said |= {exercise: tuple(words) for exercise, words in record.get("said", {}).items()}
+        found.said |= record.get("mistakes", {})
         found.undone.update(record.get("undone", ()))
         problems |= dict.fromkeys(record["problems"])
         graded = datetime.fromisoformat(record["graded"])
@@ -112,20 +112,21 @@ def misunderstood(works):
     for student, found in works.items():
         for row in found.rows:
             identifiers = row.misconception.split(";") if row.misconception else []
-            for identifier in identifiers:
+            mistakes = found.said.get(row.exercise, [])
+            for i, identifier in enumerate(identifiers):
                 who[identifier].add(student)
                 where[identifier][row.exercise] += 1
-                # Words about this mistake alone are better than those about several at once.
-                said[identifier][len(identifiers) == 1, row.exercise, found.said.get(row.exercise, ("", ""))] += 1
+                words = tuple(mistakes[i]) if len(mistakes) == len(identifiers) else ("", "")
+                said[identifier][row.exercise, words] += 1
     result = []
     for identifier, students in who.items():
         exercises = sorted(where[identifier].items(), key=lambda item: (-item[1], order.index(item[0])))
 
         def fitting(key, times=said[identifier], where=where[identifier]):
-            alone, exercise, words = key
-            return any(words), alone, where[exercise], times[key]
+            exercise, words = key
+            return any(words), where[exercise], times[key]
 
-        _, _, (says, hint) = max(said[identifier], key=fitting)
+        _, (says, hint) = max(said[identifier], key=fitting)
         result.append(Misunderstood(identifier, len(students), exercises, says, hint))
     return sorted(result, key=lambda found: (-found.students, -sum(n for _, n in found.exercises), found.id))
 
@@ -201,7 +202,7 @@ def look(works):
     for student, found in works.items():
         for row in found.rows:
             if row.status in kinds and not row.misconception and not found.is_undone(row):
-                says, _ = found.said.get(row.exercise, ("", ""))
+                says = " ".join(says for says, _ in found.said.get(row.exercise, ()))
                 reasons = kinds[row.status].setdefault(student, {})
                 reasons.setdefault(says or f"status {row.status}", []).append(row.exercise)
         for notebook in found.absent:

@@ -30,6 +30,7 @@ from sqlalchemy.exc import DatabaseError, OperationalError
 
 from .api import settings
 from .course import ASSIGNMENT, CourseError, replace
+from .marks import Grades, Points
 from .submission import TIMESTAMP
 
 PATIENCE = 60.0  # seconds to wait for a database that somebody else has locked
@@ -91,22 +92,6 @@ class Writer:
         shutil.rmtree(self.course.feedback(graded.student), ignore_errors=True)  # made anew, or it would be out of date
         self._write_files(graded)
 
-    def hand_graded(self):
-        """{student: (points given by hand, most of these, points in all, most in all)}, late penalties left out."""
-        names = ("written_score", "max_written_score", "score", "max_score")
-        return {
-            submission["student"]: tuple(submission[name] for name in names)
-            for submission in self.gradebook.submission_dicts(ASSIGNMENT)
-        }
-
-    def waiting(self):
-        """[(student, notebook, cell)] of the answers that wait for a human."""
-        columns = select(SubmittedAssignment.student_id, Notebook.name, BaseCell.name).select_from(Grade)
-        linked = columns.join(Grade.notebook).join(SubmittedNotebook.assignment).join(SubmittedAssignment.assignment)
-        linked = linked.join(SubmittedNotebook.notebook).join(Grade.cell)
-        wanted = linked.where(Assignment.name == ASSIGNMENT, Grade.needs_manual_grade)
-        return self.gradebook.db.execute(wanted.order_by(Notebook.name, BaseCell.name)).all()
-
     def export(self, path):
         """Write nbgrader's own CSV of the assignment's grades: what `nbgrader export` writes."""
         fresh = path.with_name(f".{path.name}.new")
@@ -114,6 +99,30 @@ class Writer:
         exporter.to, exporter.assignment = str(fresh), [ASSIGNMENT]
         exporter.export(self.gradebook)
         fresh.replace(path)
+
+    def grades(self):
+        """What students are told of their points, {student: {notebook: Grades}}, in three queries for the whole class."""
+        found = {}
+
+        def of(table, *columns):
+            whose = select(SubmittedAssignment.student_id, Notebook.name, *columns).select_from(table)
+            if table is not SubmittedNotebook:
+                whose = whose.join(SubmittedNotebook, SubmittedNotebook.id == table.notebook_id)
+                whose = whose.join(BaseCell, BaseCell.id == table.cell_id)
+            whose = whose.join(SubmittedAssignment, SubmittedAssignment.id == SubmittedNotebook.assignment_id)
+            whose = whose.join(Assignment, Assignment.id == SubmittedAssignment.assignment_id)
+            whose = whose.join(Notebook, Notebook.id == SubmittedNotebook.notebook_id)
+            for student, notebook, *values in self.gradebook.db.execute(whose.where(Assignment.name == ASSIGNMENT)):
+                yield found.setdefault(student, {}).setdefault(notebook, Grades()), *values
+
+        for grades, penalty in of(SubmittedNotebook, SubmittedNotebook.late_submission_penalty):
+            grades.penalty = penalty or 0.0
+        for grades, cell, *points in of(Grade, BaseCell.name, Grade.score, Grade.max_score, Grade.needs_manual_grade):
+            grades.cells[cell] = Points(*points)
+        for grades, cell, comment in of(Comment, BaseCell.name, Comment.comment):
+            if comment:
+                grades.comments[cell] = comment
+        return found
 
     def remove(self, student):
         """Forget a student and all that was made for them."""

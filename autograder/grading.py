@@ -13,10 +13,12 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import nbformat
+from transform_lab import panel
 
 from .exercises import EXERCISES, key
 from .intake import restore
 from .judge import Row, judge, rows
+from .public_example import public_cases
 from .sandbox import Limits, Sandbox
 
 RECORD = "transform_lab"  # the entry of an autograded notebook's metadata that holds its verdicts
@@ -33,6 +35,7 @@ class Assignment:
     digest: str
     limits: Limits = Limits()
     isolated: bool = True
+    public: dict = field(default_factory=dict)  # {exercise: plain data}: the cases of the students' own `check`
 
     def sandbox(self, submission):
         """A Sandbox for one submission, with the files that its notebooks may import or read."""
@@ -56,7 +59,10 @@ def assignment(course, seed, limits=Limits(), isolated=True, notebooks=None):
     wanted = course.notebooks if notebooks is None else notebooks
     names = [name for notebook in wanted for name in course.notebooks[notebook].points]
     keys = {name: key(EXERCISES[name], seed) for name in names}
-    return Assignment(dict(course.notebooks), keys, course.package, seed, specification(course), limits, isolated)
+    key_file = course.release / "transform_lab" / "key.json"
+    public = public_cases(key_file.read_text(encoding="utf-8")) if key_file.is_file() else {}
+    digest = specification(course)
+    return Assignment(dict(course.notebooks), keys, course.package, seed, digest, limits, isolated, public)
 
 
 def new_seed():
@@ -98,14 +104,15 @@ def grade_submission(submission, assignment):
 def grade_notebook(intake, released, assignment, sandbox, submission):
     """Judge one notebook: {exercise: Verdict}; its outputs, and its record in the metadata, are filled in.
 
-    The record is what reports are made from, and tells what need not be graded again.
+    The record is what reports and feedback are made from, and tells what need not be graded again.
     """
-    verdicts = judge(intake, released, assignment.keys, sandbox)
+    verdicts, examples = judge(intake, released, assignment.keys, sandbox, assignment.public)
     intake.notebook.metadata[RECORD] = nbformat.from_dict(
         {
             "rows": [asdict(row) for row in rows(released, verdicts)],
-            "said": {name: [verdict.says, verdict.hint] for name, verdict in verdicts.items()},
+            "mistakes": {name: panel.mistakes(verdict) for name, verdict in verdicts.items()},
             "undone": [name for name, verdict in verdicts.items() if not verdict.done],
+            "examples": examples,
             "problems": [*submission.problems, *intake.problems],
             "seed": assignment.seed,
             "graded": datetime.now(UTC).isoformat(timespec="seconds"),
@@ -117,7 +124,7 @@ def grade_notebook(intake, released, assignment, sandbox, submission):
 
 
 def recorded(course, student):
-    """({notebook: record}) of what is already graded; a damaged or outdated record counts as not graded."""
+    """{notebook: record} of what is already graded; a damaged or outdated record counts as not graded."""
     found = {}
     for name, released in course.notebooks.items():
         try:

@@ -6,11 +6,14 @@ exercise, and compares what comes back. So nothing a student redefines in the no
 
 import time
 from dataclasses import dataclass
+from functools import partial
+from types import MappingProxyType
 
 import nbformat
 from transform_lab import panel
 from transform_lab.verdict import Verdict, examine
 
+from . import public_example
 from .outputs import safe
 from .sandbox import Ended
 
@@ -38,17 +41,21 @@ class Row:
     misconception: str = ""
 
 
-def judge(intake, released, keys, sandbox):
-    """Fill in the outputs of `intake.notebook` and return {exercise: Verdict} for all exercises of the notebook.
+def judge(intake, released, keys, sandbox, public=MappingProxyType({})):
+    """Fill in the outputs of `intake.notebook`; ({exercise: Verdict}, {exercise: example}).
+
+    There is a verdict for each exercise of the notebook, and an example (see public_example) for wrong ones where one was found.
 
     keys: {exercise: plain data}, from autograder.exercises.key with the run's seed
+    public: {exercise: plain data}, from public_example.public_cases
     """
+    examples = {}
     verdicts = {name: Verdict(name, status, says=NOT_GRADED[status]) for name, status in intake.statuses.items()}
     if set(verdicts) != set(released.points):
         skip, deadline = set(), time.monotonic() + sandbox.limits.notebook
         for _ in range(MOST_RESTARTS + 1):
             with sandbox.notebook(deadline) as process:
-                culprit = _run(intake, released, keys, process, verdicts, skip)
+                culprit = _run(intake, released, keys, process, verdicts, skip, public, examples)
             if culprit is None or process.exhausted:
                 break
             skip.add(culprit)
@@ -59,7 +66,7 @@ def judge(intake, released, keys, sandbox):
         name = _exercise(cell, released)
         if name:
             _show(cell, verdicts[name], released.points[name])
-    return verdicts
+    return verdicts, examples
 
 
 def rows(released, verdicts):
@@ -76,7 +83,7 @@ def score(verdict, points):
     return points if verdict.right else max(0.0, min(round(verdict.credit * points, 2), points - 0.01))
 
 
-def _run(intake, released, keys, process, verdicts, skip):
+def _run(intake, released, keys, process, verdicts, skip, public, examples):
     """Run the notebook from its start; returns the position of a cell that brought the process down, or None."""
     for position, cell in enumerate(intake.notebook.cells):
         if cell.cell_type != "code" or position in skip:
@@ -95,8 +102,10 @@ def _run(intake, released, keys, process, verdicts, skip):
                 _end(intake, released, verdicts, position)
                 return None
         elif name not in verdicts:
-            verdict = examine(name, keys[name], lambda args, kwargs, name=name: process.call(name, args, kwargs))
-            verdicts[name] = verdict
+            call = partial(process.call, name)
+            verdicts[name] = examine(name, keys[name], call)
+            if name in public and (example := public_example.find(verdicts[name], public[name], call)):
+                examples[name] = example
             if process.gone:
                 return position
     return None

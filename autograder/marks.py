@@ -26,3 +26,21 @@ def marks(notebook):
             unchanged = cell.metadata.nbgrader.get("checksum") == utils.compute_checksum(cell)
             found.comments[cell.metadata.nbgrader.grade_id] = "No response." if unchanged else None
     return found
+
+
+@dataclass
+class Points:
+    """What a cell earned, by the grader or by a human; `waiting` for a human who has not given any yet."""
+
+    earned: float
+    most: float
+    waiting: bool
+
+
+@dataclass
+class Grades:
+    """What the gradebook holds of one notebook: {cell: Points}, {cell: comment}, and the points that being late costs."""
+
+    cells: dict = field(default_factory=dict)
+    comments: dict = field(default_factory=dict)
+    penalty: float = 0.0

@@ -17,6 +17,7 @@ from markupsafe import Markup, escape
 
 from . import examples, findings
 from .course import ASSIGNMENT, replace
+from .exercises import EXERCISES
 from .judge import Row
 
 COLUMNS = ("student", *(field.name for field in fields(Row)))
@@ -38,7 +39,14 @@ def write(course, writer):
     writer.export(course.reports / "grades.csv")
     since, before = _before(course)
     shared, rare = _misunderstood(course, works)
-    waiting = [answer for answer in writer.waiting() if answer[0] in works]
+    grades = writer.grades()
+    waiting = [
+        (student, notebook, cell)
+        for student in works
+        for notebook, found in grades[student].items()
+        for cell, points in found.cells.items()
+        if points.waiting
+    ]
     page = _template(course).render(
         assignment=ASSIGNMENT,
         works=works,
@@ -54,7 +62,7 @@ def write(course, writer):
         formgrader=FORMGRADER,
         since=since,
         changes=findings.changes(before, works) if before else None,
-        by_hand=writer.hand_graded(),
+        by_hand={student: _by_hand(grades[student]) for student in works},
     )
     replace(course.reports / "index.html", page)
     return {student: work.rows for student, work in works.items()}
@@ -152,6 +160,14 @@ def _section(course, exercise):
     section = course.notebooks[notebook].section(exercise)
     address = f"../../notebooks/{ASSIGNMENT}/{notebook}.ipynb"
     return f"{notebook}: {section}", f"{quote(address)}#{quote(section.replace(' ', '-'))}"
+
+
+def _by_hand(grades):
+    """(points given by hand, most of these, points in all, most in all) of a student's {notebook: Grades}."""
+    everything = [item for found in grades.values() for item in found.cells.items()]
+    by_hand = [points for name, points in everything if name not in EXERCISES]
+    in_all = [points for _, points in everything]
+    return tuple(sum(getattr(p, field) for p in cells) for cells in (by_hand, in_all) for field in ("earned", "most"))
 
 
 def _questions(course, waiting):

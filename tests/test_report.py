@@ -177,7 +177,8 @@ def test_hand_graded_questions_that_wait_are_counted(course):
     assert "Question: pose or transform?" in words
     assert "http://localhost:8888/formgrader/gradebook/transforms/ 2_homogeneous_transforms" in words
     with Writer(course) as writer:
-        assert before == sum(cell == "question-pose-or-transform" for _, _, cell in writer.waiting())
+        cells = [found["2_homogeneous_transforms"].cells for found in writer.grades().values()]
+        assert before == sum(found["question-pose-or-transform"].waiting for found in cells)
         grade = writer.gradebook.find_grade(
             "question-pose-or-transform", "2_homogeneous_transforms", "transforms", "ben"
         )

@@ -41,7 +41,7 @@ def _described(exercise):
     public = key(exercise, PUBLIC_SEED)
     rows = {}
     for misconception in exercise.misconceptions:
-        row = (misconception.id, misconception.says, misconception.hint)
+        row = (misconception.id, *(text.replace("\n", "<br>") for text in (misconception.says, misconception.hint)))
         rows.setdefault(row, []).append(_earned(exercise, public, misconception))
     return {
         "signature": f"{exercise.name}{signature(exercise.reference)}",

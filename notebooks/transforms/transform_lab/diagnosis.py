@@ -112,10 +112,14 @@ def _one_of(fitting):
 
 
 def _together(found):
-    """Several Diagnoses as one."""
+    """Several Diagnoses as one: a line for each mistake in what is said, and the same line in the hint."""
     ids = tuple(dict.fromkeys(identifier for one in found for identifier in one.ids))
-    says, hint = dict.fromkeys(one.says for one in found), dict.fromkeys(one.hint for one in found)
-    return Diagnosis(ids, " ".join(filter(None, says)), " ".join(filter(None, hint)))
+    return Diagnosis(ids, *lines((one.says, one.hint) for one in found if one.says))
+
+
+def lines(messages):
+    """(says, hint) of several mistakes, from the (says, hint) of each: the n-th line of both is about the n-th mistake."""
+    return tuple("\n".join(texts) for texts in zip(*dict.fromkeys(messages)))
 
 
 def _fit(index, exercise, replies, outcomes):

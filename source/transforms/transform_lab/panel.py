@@ -5,6 +5,7 @@ With `numbers=False` (feedback on the grader's hidden cases) the kind of case is
 
 import re
 from html import escape
+from itertools import zip_longest
 
 import numpy as np
 
@@ -29,10 +30,16 @@ def title(verdict):
 
 def summary(verdict):
     """What there is to say about an answer that is not right, in one line; nothing about one that is."""
+    found = [f"[{', '.join(verdict.misconceptions)}]"] if verdict.misconceptions else []
+    return " ".join([*found, *(says for says, _ in mistakes(verdict))])
+
+
+def mistakes(verdict):
+    """What is not right and what helps, [(says, hint), …], a pair for each mistake; of a right answer, []."""
     if verdict.right:
-        return ""
-    found = f"[{', '.join(verdict.misconceptions)}] " if verdict.misconceptions else ""
-    return found + (verdict.says or title(verdict).partition(": ")[2])
+        return []
+    pairs = zip_longest(verdict.says.split("\n"), verdict.hint.split("\n"), fillvalue="")
+    return [(says or title(verdict).partition(": ")[2], hint) for says, hint in pairs]
 
 
 def text(verdict, points=None, numbers=True):
@@ -42,20 +49,28 @@ def text(verdict, points=None, numbers=True):
 
 def html(verdict, points=None, numbers=True):
     """The whole verdict in HTML; every text of the student's is escaped."""
-    colour = COLOURS["right" if verdict.right else "wrong" if verdict.done else "waiting"]
-    mark = "✓" if verdict.right else "✗" if verdict.done else "…"
-    lines = [f'<div style="border-left:4px solid {colour};padding:2px 12px;margin:4px 0">']
-    lines.append(f'<strong><span style="color:{colour}">{mark}</span> {escape(title(verdict))}</strong>')
-    lines += [f"<div>{_code(escape(sentence))}</div>" for sentence in _sentences(verdict, points)]
-    example = "\n".join(_example(verdict, numbers))
-    if example:
-        lines.append(f'<pre style="margin:6px 0;white-space:pre-wrap;font-family:monospace">{escape(example)}</pre>')
-    return "\n".join([*lines, "</div>"])
+    state = "right" if verdict.right else "wrong" if verdict.done else "waiting"
+    mark = {"right": "✓", "wrong": "✗", "waiting": "…"}[state]
+    headline = f'<strong><span style="color:{COLOURS[state]}">{mark}</span> {escape(title(verdict))}</strong>'
+    sentences = [f"<div>{with_code(sentence)}</div>" for sentence in _sentences(verdict, points)]
+    return beside_a_bar([headline, *sentences, example(verdict, numbers)], state)
 
 
-def _code(text):
-    """`code` in a sentence, as HTML."""
-    return re.sub(r"`([^`]+)`", r"<code>\1</code>", text)
+def beside_a_bar(pieces, state="wrong"):
+    """Pieces of HTML beside a bar in the colour of what is "right", "wrong" or "waiting"."""
+    style = f"border-left:4px solid {COLOURS[state]};padding:2px 12px;margin:4px 0"
+    return "\n".join([f'<div style="{style}">', *pieces, "</div>"])
+
+
+def example(verdict, numbers=True):
+    """The first case that is not right in HTML: what the function was given, what was expected, what came."""
+    lines = escape("\n".join(_example(verdict, numbers)))
+    return f'<pre style="margin:6px 0;white-space:pre-wrap;font-family:monospace">{lines}</pre>' if lines else ""
+
+
+def with_code(sentence):
+    """A sentence (text) as HTML, with its `code` set as code."""
+    return re.sub(r"`([^`]+)`", r"<code>\1</code>", escape(sentence))
 
 
 def _how_often(verdict, part):
@@ -66,7 +81,12 @@ def _how_often(verdict, part):
 
 
 def _sentences(verdict, points):
-    sentences = [] if not verdict.done else [sentence for sentence in (verdict.says, verdict.hint) if sentence]
+    sentences = []
+    if verdict.done and verdict.says:
+        found = mistakes(verdict)
+        sentences = [sentence for sentence in found[0] if sentence]
+        if len(found) > 1:  # each hint beside the mistake that it belongs to
+            sentences = [f"{number}. {' '.join(pair)}".rstrip() for number, pair in enumerate(found, 1)]
     if points is not None:
         earned, most = points
         sentences.append(f"{earned:g} of {most:g} points")
