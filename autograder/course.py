@@ -163,17 +163,10 @@ class Released:
     @property
     def title(self):
         """The notebook's first heading."""
-        return next(iter(self._headings()), self.name)
-
-    def _headings(self, before=None):
-        """The texts of the Markdown headings above a cell, or of all."""
-        found = []
-        for cell in self.notebook.cells:
-            if cell is before:
-                break
-            if cell.cell_type == "markdown":
-                found += re.findall(r"^#{1,6} +(.*?) *$", cell.source, re.MULTILINE)
-        return found
+        cells = (cell.source for cell in self.notebook.cells if cell.cell_type == "markdown")
+        return next(
+            (found[1] for found in map(re.compile("^# +(.*?) *$", re.MULTILINE).search, cells) if found), self.name
+        )
 
     @property
     def digest(self):

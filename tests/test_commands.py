@@ -78,7 +78,7 @@ def test_grading_a_small_class(course, hand_in, solved, sandboxed):
     assert statuses(course, "carol")["chain"] == "unreadable"
     assert sum(scores(course, "carol").values()) == 30
     page = (course.reports / "index.html").read_text()
-    assert "carol" in page and "could not be read" in page
+    assert "carol" in page and "3_chaining.ipynb: it cannot be read" in page
 
     code, said = run(course, "grade", "--no-feedback")
     assert code == 0 and "0 graded" in said and "3 unchanged" in said

@@ -16,6 +16,7 @@ import nbformat
 import pytest
 import yaml
 from markdown_it import MarkdownIt
+from transform_lab.verdict import Verdict
 
 from autograder.check import markdown
 from autograder.judge import Row
@@ -204,7 +205,8 @@ def test_a_job_in_which_nothing_could_be_graded_fails_and_tells_nobody(course):
 
 def test_what_students_write_is_shown_as_it_is():
     row = Row("1_rotation", "is_rotation", 0.5, 2.0, "graded")
-    text = markdown([(row, f"{NASTY}\n\n# Head\n| a | b |")], ["<img src=x> *one* of\n- two", "x" * 5000])
+    verdict = Verdict("is_rotation", says=f"{NASTY}\n\n# Head\n| a | b |")
+    text = markdown([(row, verdict)], ["<img src=x> *one* of\n- two", "x" * 5000])
     ((*_, points, says),) = table(text)
     assert points == "0.5 of 2"
     assert says.startswith(
