@@ -83,7 +83,7 @@ ENTRY_BY_ENTRY = (
 )
 BOTTOM_ROW = (
     "The bottom row of your matrix is not that of a homogeneous transform.",
-    "The lab says which four numbers it always holds.",
+    "Notebook 2 says which four numbers it always holds.",
 )
 TRANSLATION_BELOW = (
     "The translation stands in the bottom row.",
@@ -182,7 +182,7 @@ def _columns(x, y, z):
 
 WRONG_LENGTH = (
     "The hand moved in the right direction, but not by the right distance.",
-    "The lab says centimetres; lengths in a transform are metres.",
+    "The task says centimetres; lengths in a transform are metres.",
 )
 MOVED_ELSEWHERE = (
     "The hand moved along another axis than the one that points away from you.",
@@ -785,7 +785,7 @@ TRANSFORM_POINT = Exercise(
             "translation-dropped",
             lambda a_T_b, p_in_b: a_T_b[:3, :3] @ p_in_b,
             "The point was turned, but not moved: the translation has dropped out.",
-            "The lab adds a fourth number to the point. Which one lets the translation in?",
+            "Notebook 2 adds a fourth number to the point. Which one lets the translation in?",
         ),
         Misconception(
             "offset-not-rotated",

@@ -423,7 +423,7 @@ FOURTH_NUMBER = (
 )
 NOT_MOVED = (
     "The point was turned, but not moved: the translations have dropped out.",
-    "The lab adds a fourth number to the point. Which one lets the translation in?",
+    "Notebook 2 adds a fourth number to the point. Which one lets the translation in?",
 )
 ALONG_THE_BASE = (
     "Your answer is an arrow between the gripper and the object, still along the axes of the base.",

@@ -30,7 +30,8 @@ GENERAL = {
     ),
     "input-mutated": (
         "Your function changed one of its arguments.",
-        "Whoever called it still needs the original: work on a copy, or build a new object.",
+        "Whoever called it still needs the original. A plain `=` copies nothing, it only gives a second name: build a new object "
+        "from the numbers, or work on a copy.",
     ),
     "hard-coded": (
         "Your function gives the same answer whatever it is given.",
@@ -50,6 +51,22 @@ TRY_BY_HAND = "Call it yourself, in a cell of its own, with arguments of the kin
 PRINT_IS_NOT_RETURN = "`print` shows a value to you; only `return` hands it to whoever called the function."
 ADVICE = (  # for errors whose message says little to a beginner: (pattern, what helps)
     (r"^NameError", "Each notebook starts empty: is that name defined in this one, in a cell above?"),
+    (
+        r"truth value of an array",
+        "`==` of two arrays gives a True or False for each entry; `np.allclose(A, B, rtol=0, atol=1e-6)` gives a single one.",
+    ),
+    (
+        r"numpy.linalg.* has no attribute",
+        "The inverse of a matrix M is `np.linalg.inv(M)`, its determinant `np.linalg.det(M)`.",
+    ),
+    (
+        r"ndarray.* has no attribute 'append'",
+        "An array has no `append`; `np.append(v, 1)` makes a new one that is longer by 1.",
+    ),
+    (
+        r"'member_descriptor' object",
+        "A message is made with parentheses: `Pose()`.",
+    ),
     (r"^NotImplementedError", "Write this one from NumPy and tft, so that it works by itself."),
     (
         r"size 3 is different from 4|\(4,4\) and \(3,\) not aligned",

@@ -24,7 +24,7 @@ def sum_up(notebook):
     rows = [_row(name, exercise, names.get(name)) for name, exercise in exercises.items()]
     right, earned, most = (sum(row[i] for row in rows) for i in ("right", "earned", "points"))
     sentences = [
-        f"{right} of {len(rows)} exercises are right: {earned:g} of {most:g} points with these cases.",
+        f"Right so far: {right} of {len(rows)} exercises, {earned:g} of {most:g} points. Grading uses other numbers.",
         *(
             f"Question “{title}”: {n:g} points, read by a person. Have you written your answer?"
             for title, n in questions

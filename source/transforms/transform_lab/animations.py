@@ -81,7 +81,7 @@ def animate_inverse(a_T_b, names=("A", "B")):
     a, b = _two(names, "animate_inverse")
     a_T_b = rigid_transform(a_T_b, "animate_inverse: the transform")
     b_T_a = tft.inverse_matrix(a_T_b)
-    viewer = Viewer("fixed frame", ghost=True)
+    viewer = Viewer("viewer", ghost=True)
 
     def change_sides(scene, moment):
         part = min(max((moment - 0.25) / 0.5, 0), 1)

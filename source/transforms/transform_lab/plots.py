@@ -91,8 +91,8 @@ def plot_from_above(viewer, ax=None):
                 _outline(ax, node.transform @ solid.matrix, solid.color)
     for name, frame in scene.frames.items():
         T = scene.lookup(scene.fixed_frame, name)
-        for i, color in enumerate((X_RED, Y_GREEN)):
-            _arrow(ax, T[:2, 3], (frame.length or length) * T[:2, i], color, 0.35 if frame.ghost else 1)
+        for i, (letter, color) in enumerate((("X", X_RED), ("Y", Y_GREEN))):
+            _arrow(ax, T[:2, 3], (frame.length or length) * T[:2, i], color, 0.35 if frame.ghost else 1, letter)
         _name(ax, name, T[:2, 3])
     for name, arrow in scene.arrows.items():
         T = scene.lookup(scene.fixed_frame, arrow.frame)
@@ -125,7 +125,7 @@ def _arrow(ax, tail, along, color, opacity=1, name=""):
     style = {"arrowstyle": "-|>", "color": color[:3], "alpha": opacity, "linewidth": 2.5, "mutation_scale": 14}
     ax.annotate("", tail + along, tail, arrowprops={**style, "shrinkA": 0, "shrinkB": 0})
     if name:
-        style = {"color": color[:3], "alpha": max(opacity, 0.6), "parse_math": False}
+        style = {"color": color[:3], "alpha": max(opacity, 0.6), "parse_math": False, "clip_on": True}
         ax.text(*(tail + 1.17 * along), name, ha="center", va="center", **style)
 
 

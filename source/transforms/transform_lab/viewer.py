@@ -7,6 +7,8 @@ import inspect
 import numbers
 import os
 
+import numpy as np
+
 from .camera import VIEWS, Camera
 from .motion import Motion, control
 from .scene import Scene
@@ -175,7 +177,7 @@ class Viewer(Scene):
                 drawing.leave_room(length)
         body = page.render(drawing, scene.fixed_frame, self._seen_from, self._motion, states, link and link.name)
         still = self._picture(scene, drawing, page.text_height([drawing, *states]))
-        caption = self._caption(scene, drawing, length)
+        caption = self._caption(scene, [drawing, *states], length)
         rows = 1 + (len(self._motion.controls) + bool(self._motion.seconds) if self._motion else 0)
         return page.over_picture(body, still, Scene.description(scene), caption, rows)
 
@@ -185,7 +187,7 @@ class Viewer(Scene):
 
         scene, drawing, states, length = self._drawings()
         picture = self._picture(scene, drawing, page.text_height([drawing, *states]))
-        return page.still(picture, Scene.description(scene), self._seen_in(scene, drawing, length))
+        return page.still(picture, Scene.description(scene), self._seen_in(scene, [drawing], length))
 
     def picture(self):
         """Return the scene as a still picture: the bytes of a PNG file."""
@@ -211,16 +213,16 @@ class Viewer(Scene):
         nodes = in_frame(drawing.nodes, drawing.frames[scene.fixed_frame])
         return picture.render(nodes, grid(seen)[0], camera, drawing.text)
 
-    def _caption(self, scene, drawing, length):
+    def _caption(self, scene, drawings, length):
         """Return a line on what is to be seen and how to turn it."""
-        return f"{self._seen_in(scene, drawing, length)} Drag to turn, click and scroll to zoom."
+        return f"{self._seen_in(scene, drawings, length)} Drag to turn, click and scroll to zoom."
 
-    def _seen_in(self, scene, drawing, length):
+    def _seen_in(self, scene, drawings, length):
         """Return a line on the fixed frame, the axes and the grid."""
         from .drawing import grid
 
         lengths = {frame.length or length for frame in scene.frames.values()}
         long = " to ".join(f"{value:g}" for value in sorted({min(lengths), max(lengths)}))
-        _, step = grid(drawing.seen_from(scene.fixed_frame))
+        _, step = grid(np.concatenate([drawing.seen_from(scene.fixed_frame) for drawing in drawings]))
         axes = f"Axes {long} m long: X red, Y green, Z blue."
         return f"Fixed frame {scene.fixed_frame}. {axes} Grid at z = 0, squares of {step:g} m."
