@@ -95,12 +95,24 @@ def _mathml(formula, display):
     return f"<code>{html.escape(formula)}</code>"
 
 
+def _address(value):
+    """Links to other notebooks lead to their pages; other files of the assignment do not lie beside these."""
+    if value.startswith("#") or re.match(r"(https?|mailto):", value, re.IGNORECASE):
+        return value
+    page, _, place = value.partition(".ipynb")
+    return (
+        f"{page}.html{place}"
+        if re.fullmatch(r"\w+", page) and re.fullmatch(r"(#.*)?", place) and page != value
+        else None
+    )
+
+
 def _attribute(tag, name, value):
     """Pictures are those of the cell itself; links lead where they say; a space in a formula is no wider than the page."""
     if name == "src":
         return value if value.startswith(PICTURES) else None
     if name == "href":
-        return None if value.lower().startswith("data:") else value
+        return _address(value)
     if (tag, name) == ("mspace", "width"):
         return value if re.fullmatch(r"-?\d?(\.\d+)?em", value) else None
     return value

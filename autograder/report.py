@@ -172,5 +172,5 @@ def _by_hand(grades):
 
 def _questions(course, waiting):
     """[(notebook, question, how many answers wait for a human)], in order."""
-    counts = Counter((notebook, cell) for _, notebook, cell in waiting if notebook in course.notebooks)
+    counts = Counter(sorted((notebook, cell) for _, notebook, cell in waiting if notebook in course.notebooks))
     return [(notebook, course.notebooks[notebook].section(cell), n) for (notebook, cell), n in counts.items()]

@@ -268,7 +268,7 @@ def test_the_summary_says_what_was_found_what_helps_and_where_to_read_again(clas
     assert "Begin with transform_point" in text
     assert "transform_point : 0 of 2 The translation was added" in text.replace("transform_point:", "transform_point :")
     assert "What helps: The coordinates count along B's axes" in text
-    assert "Look again at Points and directions: what the 1 is for." in text
+    assert "Look again at Carrying a point from B to A." in text
     assert "Your function changed one of its arguments. What helps: Whoever called it" in text
     assert "as if the object were not turned. What helps: Behind, beside and above" in text
     assert "Question: pose or transform?: not graded yet" in text
@@ -373,8 +373,8 @@ def test_pages_in_a_browser(classroom, browser):
     tab.on("console", lambda message: said.append(message.text))
     summary = (classroom.feedback("ben") / "index.html").as_uri()
     tab.goto(summary)
-    tab.get_by_text("Points and directions: what the 1 is for").click()
-    heading = tab.get_by_role("heading", name="Points and directions: what the 1 is for")
+    tab.get_by_text("Carrying a point from B to A").click()
+    heading = tab.get_by_role("heading", name="Carrying a point from B to A")
     heading.wait_for()
     assert -1 <= heading.evaluate("found => found.getBoundingClientRect().top") < 100
     assert {url.partition("#")[0] for url in asked if not url.startswith("data:")} == {

@@ -205,7 +205,7 @@ def test_a_job_in_which_nothing_could_be_graded_fails_and_tells_nobody(course):
 
 def test_what_students_write_is_shown_as_it_is():
     row = Row("1_rotation", "is_rotation", 0.5, 2.0, "graded")
-    verdict = Verdict("is_rotation", says=f"{NASTY}\n\n# Head\n| a | b |")
+    verdict = Verdict("is_rotation", says=f"{NASTY} # Head | a | b |")
     text = markdown([(row, verdict)], ["<img src=x> *one* of\n- two", "x" * 5000])
     ((*_, points, says),) = table(text)
     assert points == "0.5 of 2"
