@@ -141,7 +141,9 @@ class _Reader:
 
     def __init__(self, formula, world, shift=None):
         formula = formula.replace("−", "-").replace("{}^", "‹")
-        self.tokens = [t for t in TOKEN.findall(SPACES.sub(" ", formula)) if t != " " and t not in (r"\left", r"\right")]
+        self.tokens = [
+            t for t in TOKEN.findall(SPACES.sub(" ", formula)) if t != " " and t not in (r"\left", r"\right")
+        ]
         self.world, self.shift, self.numbers = world, shift, 0
         self.value = self.sum()
         if self.tokens:

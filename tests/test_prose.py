@@ -19,14 +19,15 @@ be used, but for `_`, an example of which nothing follows. Words without a `#` o
 
     where p_b = taken
 
-sets what a name in the formulas of the cell stands for. `--` begins a comment.
+sets what a name in the formulas of the cell stands for; `where same origin` says that only rotations are spoken of. `--` begins
+a comment.
 """
 
 import ast
 import io
 import re
 from contextlib import redirect_stdout
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from inspect import signature
 from math import pi
@@ -48,20 +49,24 @@ TEXTS = ROOT / "source/transforms"
 CLAIMS = ROOT / "tests/prose.txt"
 NOTEBOOKS = sorted(path.stem for path in TEXTS.glob("*.ipynb"))
 CONVENTIONS = "conventions"
+SAME_ORIGIN = "same origin"  # what may follow "where": the cell speaks of rotations only
 
 # Numerals that state nothing which code could compute.
 NO_CLAIMS = {
-    r"\b[234]x[234]\b": "the shape of a matrix",
-    r"\b[Nn]otebooks? (\d|\[\d\]\(\d_\w+\.ipynb\))((,| and) \[\d\]\(\d_\w+\.ipynb\))?": "another notebook",
     r"\[(notebook )?(\d)\]\(\2_\w+\.ipynb\)": "a link to another notebook",
+    r"\b[234]x[234]\b": "the shape of a matrix",
+    r"\bnotebook \d\b": "another notebook",
     r"^# \d · ": "the title",
-    r"\bROS 1\b": "a name",
+    r"\bROS 1\b|\bpytransform3d\b": "a name",
     r"\bExamples? [12]\b": "a name",
     r"^\d\. ": "the number of an item",
     r"`(v\[:3\]|M\[:2, :2\] =\s…|M\[:2, 3\] = …|np\.append\(v, 1\)|np\.eye\(4\))`": "code to use",
 }
-COUNTED = r"(?:centimetres|turns?|degrees|radians|points|steps|minutes|digits)\b"  # words are numbers in front of these
-NUMERAL = re.compile(rf"{NUMBER}|(?!(?:a|one|both)\b){WORD}(?: of an?| an?)?\s{COUNTED}|{WORD}\s(?:an?\s)?metres?\b", re.IGNORECASE)
+COUNTED = r"(?:centimetres|turns?|degrees|radians|points|minutes|digits)\b"  # words are numbers in front of these
+NUMERAL = re.compile(
+    rf"{NUMBER}|(?!(?:a|one|both|first|second|third|fourth)\b){WORD}(?: of an?| an?)?\s{COUNTED}|{WORD}\s(?:an?\s)?metres?\b",
+    re.IGNORECASE,
+)
 FORMULA = re.compile(r"\$\$(?P<display>.+?)\$\$|\$(?P<inline>[^$]+?)\$|`(?P<code>\w+_T_\w+ = [^`]+)`", re.DOTALL)
 HEADING = re.compile(r"^#+ (?:Exercise: `(?P<name>\w+)`|Question: .*) \((?P<points>\d+) points?\b", re.MULTILINE)
 TOTAL = re.compile(r"About\s(?P<minutes>\d+)\sminutes,\s(?P<points>\d+)\spoints\.")
@@ -107,7 +112,8 @@ def frames(seed=1, **options):
 
 def true(formula, world=None, names=None):
     """Whether "a_T_c = a_T_b @ b_T_c", written as code, is so."""
-    left, right = (eval(side, names or {}, frames() if world is None else world) for side in formula.split(" = "))
+    world = frames() if world is None else world
+    left, right = (eval(side, names or {}, world) for side in formula.split(" = "))
     return same(left, right)
 
 
@@ -194,7 +200,7 @@ def notebook(name):
             waiting.clear()
     for cell in cells:
         cell.names = {
-            **NAMES, **cell.names, "points": points(name),
+            **cell.names, **NAMES, "points": points(name),
             "at": lambda cell_id: SimpleNamespace(**after[cell_id]), "printed": printed.__getitem__,
         }  # fmt: skip
     return cells
@@ -242,9 +248,10 @@ def problems(name, cells, claims):
         checked.formulas(shared_origin=name == NOTEBOOKS[0])
         checked.rest(name)
         found += [f"{name}, cell {cell.id}: {says}" for says in checked.problems]
-    used = {n.id for at, (lines, where) in claims.items() if at[0] == name for line in [*(c.code for c in lines), *where]
-            for n in ast.walk(ast.parse(line.removesuffix("="))) if isinstance(n, ast.Name) and not line.endswith("=")}  # fmt: skip
-    found += [f"{name}: {given_name} is taken from the text in prose.txt and never used" for given_name in {*given} - used - {"_"}]
+    code = [c.code for at, (lines, _) in claims.items() if at[0] == name for c in lines if not c.code.endswith("=")]
+    code += [line for at, (_, where) in claims.items() if at[0] == name for line in where if line != SAME_ORIGIN]
+    used = {node.id for line in code for node in ast.walk(ast.parse(line)) if isinstance(node, ast.Name)}
+    found += [f"{name}: {lost} is taken from the text in prose.txt and never used" for lost in {*given} - used - {"_"}]
     unknown = [cell_id for at, cell_id in claims if at == name and cell_id not in {cell.id for cell in cells}]
     return found + [f"{name} has no cell {cell_id}, of which prose.txt speaks" for cell_id in unknown]
 
@@ -275,7 +282,9 @@ class _Checked:
             match = claim.search(self.cell.text, place)
             if not match:
                 before = ", behind the claim above it" if claim.search(self.cell.text, 0) else ""
-                self.problems.append(f"“{claim.words}” is not in the text{before}. Adapt this line of prose.txt to the text")
+                self.problems.append(
+                    f"“{claim.words}” is not in the text{before}. Adapt this line of prose.txt to the text"
+                )
                 continue
             place = match.end()
             names, said = {**self.cell.names, **self.given}, claim.read(match)
@@ -300,15 +309,17 @@ class _Checked:
         if not close:
             values = [value for value, _ in said]
             right = np.round(right, 9).tolist() if None not in right else right
-            self.problems.append(f"“{match[0]}” says {values}, but {code} gives {right}. Correct the text, or prose.txt")
+            self.problems.append(
+                f"“{match[0]}” says {values}, but {code} gives {right}. Correct the text, or prose.txt"
+            )
 
     def formulas(self, shared_origin):
         for match in FORMULA.finditer(self.cell.text):
             says = set()
             for seed in range(3):
-                world = World(np.random.default_rng(seed), shared_origin or "same origin" in self.where)
+                world = World(np.random.default_rng(seed), shared_origin or SAME_ORIGIN in self.where)
                 for line in self.where:
-                    if line != "same origin":
+                    if line != SAME_ORIGIN:
                         exec(line, {**self.cell.names, **self.given}, world)
                 says.add(self.formula(match, world))
             if problem := min(says - {None}, default=None):
@@ -327,7 +338,9 @@ class _Checked:
         try:
             problem = wrong(tex, world)
         except Unreadable as error:
-            return f"{match[0]} cannot be read: {error}. Say it by “where” in prose.txt, or teach formulas.py to read it"
+            return (
+                f"{match[0]} cannot be read: {error}. Say it by “where” in prose.txt, or teach formulas.py to read it"
+            )
         begin = match.start("display") if match["display"] else match.start("inline")
         for piece in re.finditer(rf"(?:(?!{BETWEEN.pattern}).)+", tex, re.DOTALL):
             if statements(piece[0]):  # what else stands beside an equality is not computed
@@ -360,3 +373,29 @@ def test_numbers_and_formulas_are_what_the_code_says(name):
 
 def test_every_claim_speaks_of_a_text_that_there_is():
     assert {name for name, _ in claims()} <= {*NOTEBOOKS, CONVENTIONS}
+
+
+@pytest.mark.parametrize(
+    "name, cell_id, right, broken, says",
+    [
+        ("1_rotation", "turns-predict", "(-1, 0, 0)", "(1, 0, 0)", "says [1.0, 0.0, 0.0]"),
+        ("1_rotation", "columns-say", "0 & -1 & 0", "0 & 1 & 0", "gives [0.0, -1.0, 0.0, 1.0"),
+        ("1_rotation", "title", "7 points", "8 points", "the sum of nbgrader's cells gives [7.0]"),
+        ("1_rotation", "same-exercise", "(1 point)", "(2 points)", "nbgrader's cell gives [1.0]"),
+        ("1_rotation", "quaternions-formula", "= 0.3827$", "= 0.3826$", "is not true"),
+        ("2_homogeneous_transforms", "example-one", "raised by half a metre", "raised by a metre", "gives [45.0, 0.5]"),
+        ("2_homogeneous_transforms", "example-one", r"& -\sin 45", r"& \sin 45", "is not true"),
+        ("3_chaining", "inner-names-say", "{}^A T_B \\; {}^B T_C", "{}^B T_C \\; {}^A T_B", "is not true"),
+        ("3_chaining", "order", "You face left", "You walk 3 m, and face left", "nothing computes the number 3"),
+        ("4_inversion", "undo", "(\\mathbf{p}_A - \\mathbf{p})", "(\\mathbf{p}_A + \\mathbf{p})", "is not true"),
+        ("5_pre_grasp", "waypoints-say", "-0.241", "-0.242", "-0.241421356"),
+        ("conventions", "the-example", "(−2, 1, −3)", "(−2, −1, −3)", "gives [-2.0, 1.0, -3.0]"),
+        ("conventions", "frames", "`a_T_c = a_T_b @ b_T_c`", "`a_T_c = b_T_c @ a_T_b`", "is not true"),
+        ("4_inversion", "robot", "Hand-eye", "$$ {}^A T_B $$ Hand-eye", "nothing checks the formula"),
+    ],
+)
+def test_a_wrong_text_is_found(name, cell_id, right, broken, says):
+    cells = [replace(c, text=c.text.replace(right, broken, 1)) if c.id == cell_id else c for c in texts(name)]
+    assert cells != texts(name), "this test breaks a text that is no longer there: choose another one"
+    found = problems(name, cells, claims())
+    assert any(cell_id in problem and says in problem for problem in found), found
