@@ -26,11 +26,13 @@ MEANT_EXACTLY = 1e-9
 
 
 def rounding(literal):
-    """How far a number may be off that is written so: half a unit of its last digit; nothing if it has less than three."""
+    """How far a number may be off that is written so: half a unit of its last digit if it has three digits or more, two
+    decimals among them, as 36.87 and 0.707; others, as 22.5 and 0.85, are meant exactly."""
     digits, _, exponent = literal.partition("e")
-    if len(digits.replace(".", "").lstrip("0")) < 3 or "." not in digits:
+    decimals = len(digits.partition(".")[2])
+    if decimals < 2 or len(digits.replace(".", "").lstrip("0")) < 3:
         return 0.0
-    return 0.5 * 10.0 ** (int(exponent or 0) - len(digits.partition(".")[2]))
+    return 0.5 * 10.0 ** (int(exponent or 0) - decimals)
 
 
 def numbers(text, words=False):
