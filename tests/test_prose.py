@@ -14,9 +14,9 @@ Left of `::` stand the words around the number as they are in the cell (line bre
 number, also in words ("half a") or as \cos 45^\circ; `…` for some text and all numbers in it. Right of it stands code which
 computes them: it sees the variables of the notebook as they are after the next code cell, or after any other one by
 `at("cell-id")`, what a cell prints (`printed`), the reference solutions (`ref.chain`), and NAMES below. A number with
-three digits or more, two decimals among them, may be rounded; any other is meant exactly. `names =` takes numbers that are given, for
-later lines; they must be used, but for `_`, an example of which nothing follows. Words without a `#` or `…` must stand
-there exactly so, and the code must be true.
+three digits or more, two decimals among them, may be rounded; any other is meant exactly. `names =` takes numbers that are
+given, for later lines; they must be used, but for `_`, an example of which nothing follows. Words without a `#` or `…` must
+stand there exactly so, and the code must be true.
 
     where p_b = taken
 
