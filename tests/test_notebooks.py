@@ -1,5 +1,6 @@
 """The notebooks themselves: solved they earn everything, untouched they run calmly to the end and earn nothing."""
 
+import re
 import time
 
 import nbformat
@@ -16,6 +17,7 @@ from autograder.judge import judge
 from autograder.submission import Submission
 
 SOLVED = sorted((ROOT / "source/transforms").glob("*.ipynb"))
+PICTURE = re.compile(r"<img [^>]*>|<iframe (?:[^>\"]|\"[^\"]*\")*>")
 RELEASED = sorted((ROOT / "notebooks/transforms").glob("*.ipynb"))
 
 
@@ -75,6 +77,19 @@ def test_run_all_of_a_solved_notebook(path):
 
     pages = [o.data["text/html"] for cell in notebook.cells for o in cell.get("outputs", ()) if "<iframe" in str(o)]
     assert len(pages) >= 3 and max(map(len, pages)) <= 350_000
+    assert len(nbformat.writes(notebook)) < 5_000_000
+
+    # Pictures are told to who cannot see them. (Those of Matplotlib, image/png, are not: Jupyter has no place for the words.)
+    shown = [
+        o.data["text/html"]
+        for cell in notebook.cells
+        for o in cell.get("outputs", ())
+        if "text/html" in o.get("data", {})
+    ]
+    elements = [element for html in shown for element in PICTURE.findall(html)]
+    assert len(elements) >= 2 * len(pages)
+    for element in elements:
+        assert re.search(r' (alt|title)="[^"]+"', element), element[:100]
 
 
 @pytest.mark.parametrize("path", RELEASED, ids=names(RELEASED))
