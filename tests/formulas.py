@@ -89,7 +89,7 @@ class World(dict):
             value = (np.linalg.inv(self._described(match[1], "a")) @ self._point)[:3]
         elif match := re.fullmatch("([xyz])_([a-z])", name):
             value = self._described(match[2], "a")[:3, "xyz".index(match[1])]
-        elif name in ("R", "p"):
+        elif name in ("R", "t"):
             value = self["a_T_b"][:3, :3] if name == "R" else self["a_T_b"][:3, 3]
         else:
             raise KeyError(name)

@@ -70,7 +70,7 @@ NUMERAL = re.compile(
 )
 FORMULA = re.compile(r"\$\$(?P<display>.+?)\$\$|\$(?P<inline>[^$]+?)\$|`(?P<code>\w+_T_\w+ = [^`]+)`", re.DOTALL)
 HEADING = re.compile(r"^#+ (?:Exercise: `(?P<name>\w+)`|Question: .*) \((?P<points>\d+) points?\b", re.MULTILINE)
-TOTAL = re.compile(r"About\s(?P<minutes>\d+)\sminutes,\s(?P<points>\d+)\spoints\.")
+TOTAL = re.compile(r"About\s(?P<minutes>\d+)\sminutes,(?:[^\d]*\.)?[^\d.]*?\s(?P<points>\d+)\spoints\.")
 
 
 def rot(degrees, axis):
@@ -394,7 +394,7 @@ def test_every_claim_speaks_of_a_text_that_there_is():
         ("2_homogeneous_transforms", "example-one", r"& -\sin 45", r"& \sin 45", "is not true"),
         ("3_chaining", "inner-names-say", "{}^A T_B \\; {}^B T_C", "{}^B T_C \\; {}^A T_B", "is not true"),
         ("3_chaining", "order", "You face left", "You walk 3 m, and face left", "nothing computes the number 3"),
-        ("4_inversion", "undo", "(\\mathbf{p}_A - \\mathbf{p})", "(\\mathbf{p}_A + \\mathbf{p})", "is not true"),
+        ("4_inversion", "undo", "(\\mathbf{p}_A - \\mathbf{t})", "(\\mathbf{p}_A + \\mathbf{t})", "is not true"),
         ("5_pre_grasp", "waypoints-say", "-0.241", "-0.242", "-0.241421356"),
         ("conventions", "the-example", "(−2, 1, −3)", "(−2, −1, −3)", "gives [-2.0, 1.0, -3.0]"),
         ("conventions", "frames", "`a_T_c = a_T_b @ b_T_c`", "`a_T_c = b_T_c @ a_T_b`", "is not true"),
