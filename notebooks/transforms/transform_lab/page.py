@@ -159,8 +159,9 @@ def over_picture(page, picture, description, caption, rows):
 def still(picture, description, caption):
     """Return HTML that shows `picture` (PNG bytes), whose alternative text is `description`."""
     source = base64.b64encode(picture).decode("ascii")
+    width = min(640, int.from_bytes(picture[16:20], "big"))  # a PNG's own, in its header
     return (
-        f'<figure style="margin: 0; max-width: 640px"><img src="data:image/png;base64,{source}"'
+        f'<figure style="margin: 0; max-width: {width}px"><img src="data:image/png;base64,{source}"'
         f' alt="{html.escape(description)}" width="100%"><figcaption>{html.escape(caption)}</figcaption></figure>'
     )
 

@@ -1,32 +1,58 @@
 """What is better seen flat: a rotation's columns, a quaternion against its angle, a scene from above.
 
-Made with Matplotlib, in the colours of the viewer. Each function draws into `ax`, or into a new figure, and returns the
-axes, so that more can be drawn into them. While a notebook is graded nothing is drawn, and None is returned.
+Made with Matplotlib, in the colours of the viewer. Each function draws into `ax` and returns it, or into a new figure,
+which it shows. While a notebook is graded nothing is drawn, and None is returned.
 """
 
 import functools
+import inspect
+import io
 import math
 import os
 
 import numpy as np
 
+from .check import shell
 from .shapes import CORNERS, DARK, X_RED, Y_GREEN, Z_BLUE, moved
 from .validation import numbers
 
 __all__ = ["plot_columns", "plot_from_above", "plot_quaternion"]
 
 
-def _unless_graded(plot):
-    """Make `plot` do nothing while a notebook is graded: nobody looks, and importing Matplotlib takes long."""
+def _picture(plot):
+    """Make `plot` show the figure that it makes itself, with words for who cannot see it, which a PNG in Jupyter has not.
+
+    While a notebook is graded it does nothing: nobody looks, and importing Matplotlib takes long.
+    """
 
     @functools.wraps(plot)
     def drawn(*args, **kwargs):
-        return None if os.environ.get("TRANSFORM_LAB_GRADING") else plot(*args, **kwargs)
+        if os.environ.get("TRANSFORM_LAB_GRADING"):
+            return None
+        axes = plot(*args, **kwargs)
+        if shell() and inspect.signature(plot).bind(*args, **kwargs).arguments.get("ax") is None:
+            _show(axes)
+        return axes
 
     return drawn
 
 
-@_unless_graded
+def _show(axes):
+    import matplotlib.pyplot as plt
+    from IPython.display import display
+
+    from .page import still
+
+    names = dict.fromkeys([text.get_text() for text in axes.texts] + [line.get_label() for line in axes.lines])
+    words = f"{axes.get_title()}. Across: {axes.get_xlabel()}. Up: {axes.get_ylabel() or 'from -1 to 1'}."
+    words += f" Shown: {', '.join(name for name in names if name and not name.startswith('_'))}."
+    png = io.BytesIO()
+    axes.figure.savefig(png, dpi=100)
+    plt.close(axes.figure)  # or Jupyter would show it once more
+    display({"text/plain": words, "text/html": still(png.getvalue(), words, "")}, raw=True)
+
+
+@_picture
 def plot_columns(a_R_b, ax=None):
     """Draw the x and y axes of frame B, the first two columns of `a_R_b` (3x3), seen from above on frame A.
 
@@ -45,7 +71,7 @@ def plot_columns(a_R_b, ax=None):
     return ax
 
 
-@_unless_graded
+@_picture
 def plot_quaternion(axis=(0, 0, 1), ax=None):
     """Draw the four numbers x, y, z, w of a turn about `axis` (3 numbers) against its angle, from 0 to 720 degrees.
 
@@ -68,7 +94,7 @@ def plot_quaternion(axis=(0, 0, 1), ax=None):
     return ax
 
 
-@_unless_graded
+@_picture
 def plot_from_above(viewer, ax=None):
     """Draw a Viewer's scene flat: x of the fixed frame to the right, y up, in metres.
 
