@@ -82,8 +82,8 @@ def test_an_inverse_is_the_same_frames_from_the_other_side():
     viewer = animate_inverse(TILTED)
     for moment in (0, 0.4, 0.6, 1):
         np.testing.assert_allclose(at(viewer, moment).lookup("A", "B"), TILTED, atol=1e-9)
-    np.testing.assert_allclose(at(viewer, 0).lookup("fixed frame", "A"), np.eye(4), atol=1e-9)
-    np.testing.assert_allclose(at(viewer, 1).lookup("fixed frame", "B"), np.eye(4), atol=1e-9)
+    np.testing.assert_allclose(at(viewer, 0).lookup("viewer", "A"), np.eye(4), atol=1e-9)
+    np.testing.assert_allclose(at(viewer, 1).lookup("viewer", "B"), np.eye(4), atol=1e-9)
     assert "A_T_B" in at(viewer, 0).text and "B_T_A" in at(viewer, 1).text
     assert f"{np.linalg.inv(TILTED)[1, 3]:7.3f}" in at(viewer, 1).text
 
@@ -328,7 +328,7 @@ def test_a_scene_from_above_is_drawn_in_the_fixed_frame():
 
 def test_a_plot_shows_what_an_animation_or_controls_add():
     viewer = Viewer("a").interact(turn, degrees=(0, 90, 45))
-    assert [text.get_text() for text in plot_from_above(viewer).texts if text.get_text()] == ["a", "b"]
+    assert [text.get_text() for text in plot_from_above(viewer).texts if text.get_text()] == [*"XYa", *"XYb"]
 
 
 @pytest.mark.parametrize(
