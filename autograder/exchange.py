@@ -6,6 +6,7 @@ bring files of the instructor's into a submission, or end the command for the st
 
 import glob
 import os
+from datetime import UTC, datetime
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -13,7 +14,7 @@ from nbgrader.exchange.default import ExchangeCollect, ExchangeReleaseFeedback
 
 from .submission import SECRET, TIMESTAMP, read, receipts
 
-LARGEST = 1_000_000_000  # bytes of one submission
+EARLIEST = datetime.min.replace(tzinfo=UTC)
 
 
 class Collect(ExchangeCollect):
@@ -22,13 +23,25 @@ class Collect(ExchangeCollect):
     nbgrader's own follows links as the instructor, and so hands a student what a link points to: the solutions, say.
     """
 
+    def _path_to_record(self, path):
+        """A folder whose name says no time, which anybody may make there, is older than any submission."""
+        try:
+            return super()._path_to_record(path)
+        except (ValueError, OverflowError):
+            self.log.warning("%s: its name is not one that `nbgrader submit` gives.", path)
+            name = os.path.basename(path)
+            return {"username": name.rsplit("+", 3)[0], "filename": name, "timestamp": EARLIEST}
+
     def do_copy(self, src, dest, log=None):
-        with TemporaryDirectory() as taken:
-            self._take(Path(src), Path(taken))
-            super().do_copy(taken, dest, log)
+        try:
+            with TemporaryDirectory() as taken:
+                self._take(Path(src), Path(taken))
+                super().do_copy(taken, dest, log)
+        except (OSError, RuntimeError) as error:
+            self.log.error("%s: not collected: %s", src, error)
 
     def _take(self, src, taken):
-        room = LARGEST
+        room = most = 1000 * self.coursedir.max_dir_size  # bytes; more than that nbgrader refuses
         for here, _, names, descriptor in os.fwalk(src, follow_symlinks=False):
             folder = taken / Path(here).relative_to(src)
             folder.mkdir(exist_ok=True)
@@ -36,7 +49,7 @@ class Collect(ExchangeCollect):
                 content, problem = read(name, descriptor)
                 room -= len(content or b"")
                 if room < 0:
-                    problem = f"left out; at most {LARGEST / 1e9:g} GB of a submission are taken"
+                    problem = f"left out; at most {most / 1e6:g} MB of a submission are taken"
                 if problem:
                     self.log.warning("%s: %s.", Path(here, name), problem)
                 else:

@@ -34,9 +34,10 @@ def is_complete(course, student, grades):
     """
     pages = [course.feedback(student) / f"{path.stem}.html" for path in course.autograded(student).glob("*.ipynb")]
     summary = course.feedback(student) / SUMMARY
-    return (
-        not pages or all(map(_is_whole, [*pages, summary])) and _digest(grades) in summary.read_text(encoding="utf-8")
-    )
+    if not pages:
+        return True
+    told = _digest(course, student, grades).encode()
+    return all(map(_is_whole, [*pages, summary])) and told in summary.read_bytes()
 
 
 def _is_whole(page):
@@ -49,9 +50,10 @@ def _is_whole(page):
         return False
 
 
-def _digest(grades):
-    """Stands in the summary for the grades it was made from."""
-    told = {name: asdict(of) for name, of in grades.items()}
+def _digest(course, student, grades):
+    """Stands in the summary for the grades, and the grading, that it was made from."""
+    graded = [(name, record["seed"], record["graded"]) for name, record in recorded(course, student).items()]
+    told = graded, {name: asdict(of) for name, of in grades.items()}
     return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
 
 
@@ -67,6 +69,8 @@ def _one(course, student, grades):
         replace(course.feedback(student) / SUMMARY, summary(course, student, grades))
     except CourseError as error:
         return str(error)
+    except Exception as error:  # whatever it is, the others' pages and the class report are not to be lost
+        return f"{type(error).__name__}: {error}"
     return None
 
 
@@ -86,7 +90,7 @@ def summary(course, student, grades):
         most=sum(notebook["most"] for notebook in notebooks),
         waiting=sum(cell["waiting"] for notebook in notebooks for cell in notebook["questions"]),
         begin=next(wrong, None),
-        digest=_digest(grades),
+        digest=_digest(course, student, grades),
     )
 
 

@@ -60,7 +60,7 @@ def work(course, student):
         found.said |= record.get("mistakes", {})
         found.undone.update(record.get("undone", ()))
         problems |= dict.fromkeys(record["problems"])
-        graded = datetime.fromisoformat(record["graded"])
+        graded = datetime.fromisoformat(record["graded"]).astimezone()
         found.runs[record["seed"]] = max(graded, found.runs.get(record["seed"], graded))
     said_elsewhere = {NOT_HANDED_IN.format(f"{name}.ipynb") for name in found.absent}
     found.problems = [problem for problem in problems if problem not in said_elsewhere]

@@ -131,7 +131,11 @@ def recorded(course, student):
             text = (course.autograded(student) / f"{name}.ipynb").read_text(encoding="utf-8")
             record = json.loads(text)["metadata"][RECORD]
             record["rows"] = [Row(**row) for row in record["rows"]]
-            if [row.exercise for row in record["rows"]] == list(released.points):
+            datetime.fromisoformat(record["graded"])
+            if [row.exercise for row in record["rows"]] == list(released.points) and {
+                "seed",
+                "problems",
+            } <= record.keys():
                 found[name] = record
         except (OSError, ValueError, KeyError, TypeError):
             continue

@@ -27,7 +27,7 @@ def for_students(course):
         raise CourseError("There is nothing to package: run `python3 -m autograder release` first.")
     text = (course.root / "environment.txt").read_text(encoding="utf-8")
     contents["environment.txt"] = (ABOUT_ENVIRONMENT + students_section(text)).encode()
-    return {f"{ASSIGNMENT}/{path}": content for path, content in contents.items()}
+    return {f"{ASSIGNMENT}/{path}": content for path, content in contents.items() if _wanted(Path(path), Path())}
 
 
 def for_gradescope(course):

@@ -48,6 +48,7 @@ ATTRIBUTES = {
     "th": {"align", "style"},
     "td": {"align", "style"},
     "details": {"open"},
+    "input": {"checked"},  # of a list of tasks
     **MATHML,
 }
 
@@ -61,6 +62,7 @@ def markdown2html(context, source):
         tags=nh3.ALLOWED_TAGS | {"details", "summary", "input"} | MATHML.keys(),
         attributes=ATTRIBUTES,
         attribute_filter=_attribute,
+        set_tag_attribute_values={"input": {"type": "checkbox", "disabled": ""}},
         filter_style_properties={"text-align"},
         url_schemes={"http", "https", "mailto", "data"},
     )

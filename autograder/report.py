@@ -151,7 +151,8 @@ def _example(found):
         return ""
     if picture := examples.picture(exercise, found.id):
         return Markup(picture)
-    return Markup("<pre>{}</pre>").format(examples.in_words(exercise, found.id))
+    words = examples.in_words(exercise, found.id)
+    return Markup("<pre>{}</pre>").format(words) if words else ""
 
 
 def _section(course, exercise):

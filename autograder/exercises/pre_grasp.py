@@ -219,6 +219,12 @@ SHARED = tuple(
             "Where does the object itself come in?",
         ),
         (
+            "product-missing",
+            _moved(lambda p, R, offset: offset),
+            "The position is still the one in the object's frame.",
+            "Which product carries a point of the object's frame to the base frame?",
+        ),
+        (
             "offset-missing",
             _moved(lambda p, R, offset: p),
             "The answer is at the object itself: the offset is not in it.",

@@ -6,7 +6,12 @@ from pathlib import Path
 from .account import processes
 from .bubblewrap import FOLDER, WRITABLE
 
-PUBLIC = ("/tmp", "/var/tmp", "/dev/shm")  # where any user may write; a notebook's own folder lies in the first
+PUBLIC = (
+    "/tmp",
+    "/var/tmp",
+    "/dev/shm",
+    "/run/lock",
+)  # where any user may write; a notebook's own folder lies in the first
 TICK = 1 / os.sysconf("SC_CLK_TCK")  # seconds; the unit of processor time in /proc
 
 

@@ -26,7 +26,7 @@ def show_mistake(right, wrong, name="frame_b", viewer=None, length=None, gripper
     for label, value, ghost in ((name, right, True), (MISTAKE, wrong, False)):
         if hasattr(value, "orientation"):
             viewer.add_frame(label, value, length=length, ghost=ghost)
-        elif np.ndim(value) == 1:
+        elif hasattr(value, "x") or np.ndim(value) == 1:
             viewer.add_point(label, value, ghost=ghost)
         else:
             add_matrix(viewer, label, np.asarray(value, float), ghost, length)

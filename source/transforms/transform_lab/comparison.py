@@ -74,7 +74,7 @@ def add_matrix(viewer, label, matrix, ghost=False, length=None):
     try:
         viewer.add_frame(label, matrix, length=length, ghost=ghost)
     except ValueError:
-        if not np.array_equal(matrix[3], [0, 0, 0, 1]):
+        if matrix.shape != (4, 4) or not np.array_equal(matrix[3], [0, 0, 0, 1]):
             raise
         for letter, column, color in zip("xyz", matrix[:3, :3].T, (X_RED, Y_GREEN, Z_BLUE)):
             viewer.add_arrow(
