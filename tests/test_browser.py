@@ -217,7 +217,7 @@ def test_run_all_in_jupyterlab(page, server, name):
         scene = notebook.scene(i)
         frames = scene.evaluate("() => Object.keys(viewer.scene_tree.find(['meshcat', 'frames']).children)")
         assert frames
-        assert picture(scene, f"{name}_{i}") > 0.003, i
+        assert picture(scene, f"{name}_{i}") > 0.0015, i
     notebook.command("docmanager:save")
 
 
@@ -343,7 +343,7 @@ def test_a_drop_down_without_a_kernel_shows_what_was_computed(server, live):
 def test_any_frame_can_be_the_fixed_one(page, server):
     notebook = Opened(page, server, "3_chaining")
     notebook.run_all()
-    scene = notebook.scene(notebook.figures()[0])
+    scene = notebook.scene(notebook.figures()[1])  # one link of the chain; in the first, frames come one by one
     before = scene.evaluate("() => viewer.camera.position.toArray()")
     scene.locator("select").first.select_option(label="C")
     assert scene.evaluate("() => viewer.camera.position.toArray()") != before
