@@ -27,7 +27,7 @@ def for_students(course):
         raise CourseError("There is nothing to package: run `python3 -m autograder release` first.")
     text = (course.root / "environment.txt").read_text(encoding="utf-8")
     contents["environment.txt"] = (ABOUT_ENVIRONMENT + students_section(text)).encode()
-    return {f"{ASSIGNMENT}/{path}": content for path, content in contents.items() if _wanted(Path(path), Path())}
+    return {f"{ASSIGNMENT}/{path}": content for path, content in contents.items() if _is_work(path)}
 
 
 def for_gradescope(course):
@@ -66,5 +66,8 @@ def write(path, contents):
 
 def _wanted(path, root):
     """Whether `path` is a file, and nothing that Python, Jupyter or an editor has made along the way."""
-    parts = path.relative_to(root).parts
-    return path.is_file() and not any(part.startswith(".") or part == "__pycache__" for part in parts)
+    return path.is_file() and _is_work(path.relative_to(root))
+
+
+def _is_work(path):
+    return not any(part.startswith(".") or part == "__pycache__" for part in Path(path).parts)
