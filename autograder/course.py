@@ -22,6 +22,11 @@ def replace(path, text):
         raise
 
 
+def without_points(heading):
+    """A heading without the "(2 points, …)" at its end."""
+    return re.sub(r" \(\d+ points?\b.*\)$", "", heading)
+
+
 class CourseError(Exception):
     """Something about the course's folders is not as it has to be; the message says what and what to do."""
 
@@ -148,6 +153,12 @@ class Released:
             for name, cell in self.cells.items()
             if cell.metadata.nbgrader.grade and name in EXERCISES
         }
+
+    @cached_property
+    def questions(self):
+        """What a human grades in this notebook, {name: points}, in order."""
+        graded = {name: cell.metadata.nbgrader for name, cell in self.cells.items() if cell.metadata.nbgrader.grade}
+        return {name: float(nbgrader.points) for name, nbgrader in graded.items() if name not in self.points}
 
     def section(self, name):
         """The heading (`## …`, as it is read) of the part of the notebook that leads to an exercise or a question."""

@@ -1,6 +1,5 @@
 """What a known mistake looks like: the Verdict on who makes it, and the scene that shows it."""
 
-from dataclasses import replace
 from functools import cache
 
 from transform_lab import comparison, panel
@@ -10,19 +9,15 @@ from transform_lab.verdict import Reply, examine
 from .exercises import EXERCISES, PUBLIC_SEED, key
 
 
-def picture(name, identifier):
-    """Where the frame should be (pale) and where the misconception `identifier` of the exercise `name` puts it.
+def html(name, identifier):
+    """What the misconception `identifier` makes of a public case of the exercise `name`, as a piece of a page.
 
-    A still picture in HTML, of a public case; "" where there is nothing to draw, as for a truth value.
+    A still picture of where the frame should be (pale) and where it goes; in numbers what cannot be drawn, such as a truth value;
+    "" when the public cases do not show it.
     """
-    scene = comparison.scene(committed(name, _public(name), identifier))
-    return scene.still() if scene else ""
-
-
-def in_words(name, identifier):
-    """The same in plain text: what the function was given, what was expected, and what the misconception answers."""
-    verdict = replace(committed(name, _public(name), identifier), says="", hint="")
-    return panel.text(verdict).partition("\n")[2]
+    verdict = _committed(name, identifier)
+    scene = comparison.scene(verdict)
+    return scene.still() if scene else panel.example(verdict)
 
 
 def knows(name, identifier):
@@ -30,16 +25,11 @@ def knows(name, identifier):
     return identifier in {misconception.id for misconception in EXERCISES[name].misconceptions}
 
 
-def committed(name, exercise, identifier):
-    """The Verdict on the exercise `name` (plain data, see transform_lab.verdict) of who has the misconception.
-
-    The first case of the exercise in which the misconception leads to a wrong answer is the one to show. Raises ValueError
-    for a misconception that the exercise does not know.
-    """
-    known = [misconception["id"] for misconception in exercise["misconceptions"]]
-    if identifier not in known:
-        raise ValueError(f"{name} knows no misconception {identifier!r}; it knows {', '.join(dict.fromkeys(known))}")
-    answers = iter([_reply(case, case["wrong"][known.index(identifier)]) for case in exercise["cases"]])
+def _committed(name, identifier):
+    """The Verdict on the public cases of who has the misconception; its first wrong answer is the one to show."""
+    exercise = _public(name)
+    index = [misconception["id"] for misconception in exercise["misconceptions"]].index(identifier)
+    answers = iter([_reply(case, case["wrong"][index]) for case in exercise["cases"]])
     return examine(name, exercise, lambda args, kwargs: next(answers))
 
 

@@ -4,24 +4,17 @@
 """
 
 import hashlib
-import html
 import json
 import os
-import re
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict
-from functools import cache
 from urllib.parse import quote
 
-import jinja2
-from markupsafe import Markup
-from transform_lab import panel
-
 from . import api
-from .course import ASSIGNMENT, CourseError, replace
+from .course import ASSIGNMENT, CourseError, replace, without_points
 from .grading import recorded
 from .marks import Grades, Points
-from .pages import markdown2html, points
+from .pages import environment, heading
 from .workers import end_with_parent
 
 SUMMARY = "index.html"
@@ -82,7 +75,7 @@ def summary(course, student, grades):
         for name, released in course.notebooks.items()
     ]
     wrong = (cell for notebook in notebooks for cell in notebook["exercises"] if cell["link"] and not cell["right"])
-    template = _environment().get_template("summary.html")
+    template = environment().get_template("summary.html")
     return template.render(
         assignment=ASSIGNMENT,
         notebooks=notebooks,
@@ -94,36 +87,24 @@ def summary(course, student, grades):
     )
 
 
-@cache
-def _environment():
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("autograder"), autoescape=True, trim_blocks=True, lstrip_blocks=True
-    )
-    environment.filters["points"] = points
-    environment.filters["with_code"] = lambda sentence: Markup(panel.with_code(sentence))
-    environment.filters["inline"] = lambda heading: Markup(_heading(heading)[1])
-    return environment
-
-
 def _notebook(released, grades, record):
     """One notebook as the template takes it; `record` is None for one that was not handed in."""
     page = f"{quote(released.name)}.html" if record else ""
-    graded = [name for name, cell in released.cells.items() if cell.metadata.nbgrader.grade]
-    cells = {name: _cell(name, released, grades, record, page) for name in graded}
+    asked = released.points | released.questions
+    cells = {name: _cell(name, most, released, grades, record, page) for name, most in asked.items()}
     return {
         "title": released.title,
         "page": page,
         "earned": max(0.0, sum(cell["earned"] for cell in cells.values()) - grades.penalty),
         "most": sum(cell["most"] for cell in cells.values()),
         "penalty": grades.penalty,
-        "exercises": [cell for name, cell in cells.items() if name in released.points],
-        "questions": [cell for name, cell in cells.items() if name not in released.points],
+        "exercises": [cells[name] for name in released.points],
+        "questions": [cells[name] for name in released.questions],
     }
 
 
-def _cell(name, released, grades, record, page):
-    """One exercise or question as the template takes it."""
-    most = float(released.cells[name].metadata.nbgrader.points)
+def _cell(name, most, released, grades, record, page):
+    """One exercise or question, worth `most` points, as the template takes it."""
     told = grades.cells.get(name, Points(0.0, most, False))
     section = released.section(name)
     return {
@@ -135,8 +116,8 @@ def _cell(name, released, grades, record, page):
         "comment": grades.comments.get(name, ""),
         "mistakes": _mistakes(record, name),
         "link": page and f"{page}#{quote(name)}",
-        "section": re.sub(r" \(\d+ points?\b.*\)$", "", section),
-        "again": page and f"{page}#{quote(_heading(section)[0])}",
+        "section": without_points(section),
+        "again": page and f"{page}#{quote(heading(section)[0])}",
     }
 
 
@@ -146,11 +127,3 @@ def _mistakes(record, name):
         return [(str(says), str(hint)) for says, hint in record["mistakes"][name]]
     except (KeyError, TypeError, ValueError):
         return []
-
-
-@cache
-def _heading(text):
-    """A heading as the notebook's page has it: the id to jump to, and its text as HTML."""
-    made = markdown2html({}, f"# {text}")
-    found = re.fullmatch(r'<h1 id="(.*?)">(.*)<a .*</h1>\s*', made, re.DOTALL)
-    return (html.unescape(found[1]), found[2]) if found else ("", html.escape(text))

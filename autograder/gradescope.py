@@ -15,7 +15,6 @@ from transform_lab import panel
 from . import sandbox
 from .check import check_files
 from .course import Course, replace
-from .exercises import EXERCISES
 from .grading import missing
 from .outputs import printable
 
@@ -85,12 +84,7 @@ def notebooks(folder, names):
 
 def by_hand(course):
     """What to say of the questions that have points and no test."""
-    points = [
-        cell.metadata.nbgrader.points
-        for released in course.notebooks.values()
-        for name, cell in released.cells.items()
-        if cell.metadata.nbgrader.grade and name not in EXERCISES
-    ]
+    points = [most for released in course.notebooks.values() for most in released.questions.values()]
     if not points:
         return []
     return [f"The {len(points)} written questions ({sum(points):g} points) are graded by hand and not counted here."]

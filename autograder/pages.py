@@ -6,16 +6,20 @@ nbgrader_config.py names the Markdown filter and the exporter of feedback pages 
 import copy
 import html
 import re
+from functools import cache
 from pathlib import Path
 
+import jinja2
 import nbformat
 import nh3
 from jinja2 import pass_context
 from latex2mathml import converter
+from markupsafe import Markup
 from nbconvert.exporters import HTMLExporter
 from nbconvert.filters.markdown_mistune import InvalidNotebook, IPythonRenderer, MarkdownWithMath
 from nbgrader.preprocessors import GetGrades
 from nbgrader.utils import is_grade
+from transform_lab import panel
 
 from . import public_example
 from .grading import RECORD
@@ -132,6 +136,27 @@ NOTE = nbformat.v4.new_output("stream", text=LEFT_OUT)
 def points(number):
     """Points as they are said: 2, 1.33."""
     return f"{round(number, 2):g}"
+
+
+@cache
+def environment():
+    """Jinja, as the pages that we make without nbgrader use it."""
+    made = jinja2.Environment(
+        loader=jinja2.PackageLoader("autograder"), autoescape=True, trim_blocks=True, lstrip_blocks=True
+    )
+    made.filters["points"] = points
+    made.filters["with_code"] = lambda sentence: Markup(panel.with_code(sentence))
+    made.filters["inline"] = lambda text: Markup(heading(text)[1])
+    made.filters["time"] = lambda time: time.astimezone().strftime("%Y-%m-%d %H:%M %Z")
+    return made
+
+
+@cache
+def heading(text):
+    """A heading as the notebook's page has it: the id to jump to, and its text as HTML."""
+    made = markdown2html({}, f"# {text}")
+    found = re.fullmatch(r'<h1 id="(.*?)">(.*)<a .*</h1>\s*', made, re.DOTALL)
+    return (html.unescape(found[1]), found[2]) if found else ("", html.escape(text))
 
 
 class Grades(GetGrades):

@@ -3,10 +3,8 @@
 import json
 import shutil
 
-import nbformat
-
 from . import api
-from .course import ASSIGNMENT, CourseError
+from .course import ASSIGNMENT, CourseError, Released, without_points
 from .exercises import EXERCISES, PUBLIC_SEED, key
 
 
@@ -14,19 +12,13 @@ def public_key(course):
     """The text of key.json: the public cases of every exercise, and what each notebook asks for how many points."""
     points, notebooks = {}, {}
     for path in sorted(course.source.glob("*.ipynb")):
-        heading, asked = "", {"exercises": [], "questions": []}
-        for cell in nbformat.read(path, as_version=4).cells:
-            nbgrader = cell.metadata.get("nbgrader", {})
-            if nbgrader.get("grade") and nbgrader["grade_id"] in EXERCISES:
-                points[nbgrader["grade_id"]] = nbgrader["points"]
-                asked["exercises"].append(nbgrader["grade_id"])
-            elif nbgrader.get("grade"):
-                title = heading.removeprefix("Question: ").partition(" (")[0]
-                asked["questions"].append([title, nbgrader["points"]])
-            elif cell.cell_type == "markdown":
-                lines = [line for line in cell.source.splitlines() if line.startswith("#")]
-                heading = lines[-1].strip("# ") if lines else heading
-        notebooks[path.stem] = asked
+        notebook = Released(path.stem, path.read_text(encoding="utf-8"))
+        points |= notebook.points
+        questions = [
+            [without_points(notebook.section(name)).removeprefix("Question: "), most]
+            for name, most in notebook.questions.items()
+        ]
+        notebooks[notebook.name] = {"exercises": list(notebook.points), "questions": questions}
     absent = [name for name in EXERCISES if name not in points]
     if absent:
         raise CourseError(f"The notebooks in source/{ASSIGNMENT} have no test cell for: {', '.join(absent)}.")

@@ -6,19 +6,18 @@ Everything is read back from the autograded notebooks and the gradebook, so it i
 import csv
 import io
 import os
-import re
 from collections import Counter, defaultdict
 from dataclasses import astuple, fields
 from datetime import datetime
 from urllib.parse import quote
 
-import jinja2
-from markupsafe import Markup, escape
+from markupsafe import Markup
 
 from . import examples, findings
 from .course import ASSIGNMENT, replace
 from .exercises import EXERCISES
 from .judge import Row
+from .pages import environment
 
 COLUMNS = ("student", *(field.name for field in fields(Row)))
 MOST_PICTURES = 10
@@ -111,17 +110,9 @@ def _before(course):
 
 
 def _template(course):
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("autograder"), autoescape=True, trim_blocks=True, lstrip_blocks=True
-    )
-    environment.filters |= {
-        "code": lambda text: Markup(re.sub(r"`([^`]+)`", r"<code>\1</code>", str(escape(text)))),
-        "points": lambda number: f"{round(number, 2):g}",
-        "time": lambda time: time.astimezone().strftime("%Y-%m-%d %H:%M %Z"),
-    }
     notebooks = {name: notebook for notebook, released in course.notebooks.items() for name in released.points}
-    environment.globals["feedback"] = lambda student, exercise: _feedback(course, student, notebooks[exercise])
-    return environment.get_template("report.html")
+    pages = {"feedback": lambda student, exercise: _feedback(course, student, notebooks[exercise])}
+    return environment().get_template("report.html", globals=pages)
 
 
 def _feedback(course, student, notebook):
@@ -147,12 +138,7 @@ def _misunderstood(course, works):
 def _example(found):
     """An example of a misconception in the exercise where it is most frequent; "" for those that any exercise can have."""
     exercise = found.exercises[0][0]
-    if not examples.knows(exercise, found.id):
-        return ""
-    if picture := examples.picture(exercise, found.id):
-        return Markup(picture)
-    words = examples.in_words(exercise, found.id)
-    return Markup("<pre>{}</pre>").format(words) if words else ""
+    return Markup(examples.html(exercise, found.id)) if examples.knows(exercise, found.id) else ""
 
 
 def _section(course, exercise):

@@ -98,6 +98,17 @@ def chromium():
     return found or lacking("needs Chromium, to open pages as a student's browser does")
 
 
+@pytest.fixture(scope="module")
+def browser(chromium):
+    """A running Chromium, driven by playwright."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        launched = playwright.chromium.launch(executable_path=chromium, args=[*CHROMIUM_FLAGS, *SOFTWARE_WEBGL])
+        yield launched
+        launched.close()
+
+
 @pytest.fixture(scope="session")
 def hand_in():
     """hand_in(course, student, notebooks): put files into submitted/, {notebook name: path, bytes or notebook}."""

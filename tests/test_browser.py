@@ -18,14 +18,13 @@ import urllib.request
 import nbformat
 import numpy as np
 import pytest
-from conftest import CHROMIUM_FLAGS, ROOT, SOFTWARE_WEBGL
+from conftest import ROOT
 from PIL import Image
 from transform_lab import tft
 from transform_lab.animations import between
 
 NOTEBOOKS = [path.stem for path in sorted((ROOT / "notebooks/transforms").glob("*.ipynb"))]
 SCREENSHOTS = ROOT / "screenshots"
-FLAGS = [*CHROMIUM_FLAGS, *SOFTWARE_WEBGL]
 PATIENCE = 60_000  # milliseconds; these machines are slow at times
 FRAME = "name => viewer.scene_tree.find(['meshcat', 'frames', name]).object.matrix.elements"
 ROOT_MATRIX = (
@@ -90,16 +89,6 @@ def server(tmp_path_factory):
     running = Server(tmp_path_factory.mktemp("jupyter") / "work")
     yield running
     running.stop()
-
-
-@pytest.fixture(scope="module")
-def browser(chromium):
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
-        launched = playwright.chromium.launch(executable_path=chromium, args=FLAGS)
-        yield launched
-        launched.close()
 
 
 @pytest.fixture

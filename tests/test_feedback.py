@@ -10,10 +10,8 @@ from html.parser import HTMLParser
 import nbformat
 import numpy as np
 import pytest
-from conftest import CHROMIUM_FLAGS
 from nbgrader.api import Gradebook
 from nbgrader.coursedir import CourseDirectory
-from playwright.sync_api import sync_playwright
 from test_commands import run
 from test_pages import Parsed, markdown
 from transform_lab import panel
@@ -356,14 +354,6 @@ def test_every_formula_of_the_notebooks_becomes_mathml(released):
                 assert "\\" not in "".join(re.findall(r"<math.*?</math>", made, re.DOTALL))
                 assert not re.findall(r"<code>[^<]*\\[^<]*</code>", made)
     assert formulas > 100
-
-
-@pytest.fixture(scope="module")
-def browser(chromium):
-    with sync_playwright() as playwright:
-        found = playwright.chromium.launch(executable_path=chromium, args=CHROMIUM_FLAGS)
-        yield found
-        found.close()
 
 
 def test_pages_in_a_browser(classroom, browser):

@@ -9,7 +9,6 @@ from urllib.parse import unquote
 
 import nbformat
 import pytest
-from conftest import CHROMIUM_FLAGS
 from test_commands import run, verdicts
 from test_nbgrader import nbgrader
 
@@ -314,19 +313,15 @@ def test_the_page_is_in_order(graded):
 
 
 @pytest.mark.parametrize("width", [1200, 600, 400, 320])
-def test_the_page_fits_the_window_and_asks_for_nothing(graded, chromium, width):
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as play:
-        browser = play.chromium.launch(executable_path=chromium, args=CHROMIUM_FLAGS)
-        window = browser.new_page(viewport={"width": width, "height": 800})
-        asked, said = [], []
-        window.on("request", lambda request: asked.append(request.url))
-        window.on("dialog", lambda dialog: said.append(dialog.message))
-        window.goto((graded.reports / "index.html").as_uri())
-        assert window.evaluate("document.documentElement.scrollWidth") <= width
-        assert window.evaluate("[...document.images].every(image => image.naturalWidth > 0)")
-        browser.close()
+def test_the_page_fits_the_window_and_asks_for_nothing(graded, browser, width):
+    window = browser.new_page(viewport={"width": width, "height": 800})
+    asked, said = [], []
+    window.on("request", lambda request: asked.append(request.url))
+    window.on("dialog", lambda dialog: said.append(dialog.message))
+    window.goto((graded.reports / "index.html").as_uri())
+    assert window.evaluate("document.documentElement.scrollWidth") <= width
+    assert window.evaluate("[...document.images].every(image => image.naturalWidth > 0)")
+    window.close()
     assert [url for url in asked if not url.startswith("data:")] == [(graded.reports / "index.html").as_uri()]
     assert not said
 

@@ -3,6 +3,7 @@
 from functools import reduce
 
 import numpy as np
+from transform_lab.diagnosis import together
 
 from .cases import (
     either_sign,
@@ -35,7 +36,7 @@ from .homogeneous_transforms import (
     from_euler,
     trace_formula_guarded,
 )
-from .specification import Case, Exercise, Misconception, together
+from .specification import Case, Exercise, Misconception
 
 # --- chain ----------------------------------------------------------------------------------------------------------
 

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 from scipy.spatial.transform import Rotation
+from transform_lab.diagnosis import together
 
 from .cases import (
     either_sign,
@@ -30,7 +31,7 @@ from .cases import (
     x_axis_upright,
 )
 from .rotation import TRUNCATED
-from .specification import Case, Exercise, Misconception, together
+from .specification import Case, Exercise, Misconception
 
 EXAMPLE_1 = transform(rotation_about((0, 0, 1), math.pi / 4), (0, 0, 0.5))  # the lab's: turned by 45 degrees and raised
 

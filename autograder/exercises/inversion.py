@@ -2,6 +2,7 @@
 
 import numpy as np
 from scipy.spatial.transform import Rotation
+from transform_lab.diagnosis import together
 
 from .cases import (
     from_roll_pitch_yaw,
@@ -22,7 +23,7 @@ from .cases import (
 )
 from .homogeneous_transforms import BOTTOM_ROW, ENTRY_BY_ENTRY, YAW_ALONE
 from .rotation import TRUNCATED
-from .specification import Case, Exercise, Misconception, together
+from .specification import Case, Exercise, Misconception
 
 
 def _parts(T):

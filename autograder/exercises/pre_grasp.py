@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 from scipy.spatial.transform import Rotation
+from transform_lab.diagnosis import together
 
 from .cases import (
     either_sign,
@@ -37,7 +38,7 @@ from .homogeneous_transforms import (
     plain_angles,
     trace_formula_guarded,
 )
-from .specification import Case, Exercise, Misconception, together
+from .specification import Case, Exercise, Misconception
 
 LAB_OBJECT = pose_of((0.6, -0.1, 0.7), (0.0, 0.0, 0.38268343, 0.92387953))  # the lab's, as printed there
 

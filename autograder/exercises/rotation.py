@@ -5,9 +5,10 @@ import math
 import numpy as np
 from scipy.spatial.transform import Rotation
 from transform_lab.answers import TOLERANCE
+from transform_lab.diagnosis import together
 
 from .cases import half_turn, quaternion, rotation, rotation_about, signed_permutations, slanted_axis, tilt, transform
-from .specification import Case, Exercise, Misconception, together
+from .specification import Case, Exercise, Misconception
 
 # --- rotation_about_z -----------------------------------------------------------------------------------------------
 

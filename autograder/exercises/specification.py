@@ -11,7 +11,7 @@ from inspect import signature
 import numpy as np
 from transform_lab import codec
 from transform_lab.answers import PARTS, same
-from transform_lab.diagnosis import error_of, lines, open_parts_of
+from transform_lab.diagnosis import error_of, open_parts_of
 
 PUBLIC_SEED = 24  # the cases students see; any other seed draws hidden ones
 DIGITS = 12  # decimals kept of arguments and right answers: far below the tolerance of 1e-6
@@ -37,11 +37,6 @@ class Misconception:
     hint: str  # helps without giving the solution away
     # From the arguments to the parts of the answer that hang on how exactly it is computed: others answer otherwise.
     varies: Callable = lambda *args, **kwargs: ()
-
-
-def together(*messages):
-    """(says, hint) of several mistakes at once, from the (says, hint) of each."""
-    return lines(messages)
 
 
 @dataclass(frozen=True)

@@ -94,7 +94,7 @@ def diagnose(exercise, replies, outcomes):
     says, hint = GENERAL["input-mutated"]
     if all(outcome.answered for outcome in outcomes):
         says = f"Your answers are right, but your function {says.removeprefix('Your function ')}"
-    return _together([Diagnosis(("input-mutated",), says, hint), found])
+    return _joined([Diagnosis(("input-mutated",), says, hint), found])
 
 
 def constant(replies):
@@ -128,13 +128,13 @@ def _one_of(fitting):
     return Diagnosis(tuple(fitting[0]["id"].split(";")), fitting[0]["says"], fitting[0]["hint"])
 
 
-def _together(found):
+def _joined(found):
     """Several Diagnoses as one: a line for each mistake in what is said, and the same line in the hint."""
     ids = tuple(dict.fromkeys(identifier for one in found for identifier in one.ids))
-    return Diagnosis(ids, *lines((one.says, one.hint) for one in found if one.says))
+    return Diagnosis(ids, *together(*((one.says, one.hint) for one in found if one.says)))
 
 
-def lines(messages):
+def together(*messages):
     """(says, hint) of several mistakes, from the (says, hint) of each: the n-th line of both is about the n-th mistake."""
     return tuple("\n".join(texts) for texts in zip(*dict.fromkeys(messages)))
 
@@ -226,7 +226,7 @@ def _part_by_part(exercise, outcomes):
     ]
     if len(sets) != 1 or None in (found := [explained[touched] for touched in sets[0]]):
         return Diagnosis()
-    return _together(sorted(found, key=lambda one: one.ids))
+    return _joined(sorted(found, key=lambda one: one.ids))
 
 
 def _partial_explanations(exercise, outcomes):
