@@ -2,8 +2,8 @@
 
 import re
 
-from transform_lab import panel
-from transform_lab.verdict import Verdict
+from transform_lab.judging import panel
+from transform_lab.judging.verdict import Verdict
 
 from .grading import assignment, grade_notebook, missing, new_seed
 from .intake import restore

@@ -365,7 +365,7 @@ def check(options):
     here = course()
     ForkServer.serving(here.package)  # loads while the rest is loaded here
 
-    from transform_lab import panel
+    from transform_lab.judging import panel
 
     from .check import check_files, markdown, points
 

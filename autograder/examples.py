@@ -2,9 +2,9 @@
 
 from functools import cache
 
-from transform_lab import comparison, panel
-from transform_lab.diagnosis import error_of, open_parts_of
-from transform_lab.verdict import Reply, examine
+from transform_lab.judging import comparison, panel
+from transform_lab.judging.diagnosis import error_of, open_parts_of
+from transform_lab.judging.verdict import Reply, examine
 
 from .exercises import EXERCISES, PUBLIC_SEED, key
 

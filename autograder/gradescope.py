@@ -10,7 +10,7 @@ import sys
 import traceback
 from pathlib import Path
 
-from transform_lab import panel
+from transform_lab.judging import panel
 
 from . import sandbox
 from .check import check_files

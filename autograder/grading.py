@@ -13,7 +13,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import nbformat
-from transform_lab import panel
+from transform_lab.judging import panel
 
 from .exercises import EXERCISES, key
 from .intake import restore

@@ -10,8 +10,8 @@ from functools import partial
 from types import MappingProxyType
 
 import nbformat
-from transform_lab import panel
-from transform_lab.verdict import Verdict, examine
+from transform_lab.judging import panel
+from transform_lab.judging.verdict import Verdict, examine
 
 from . import public_example
 from .outputs import safe

@@ -19,7 +19,7 @@ from nbconvert.exporters import HTMLExporter
 from nbconvert.filters.markdown_mistune import InvalidNotebook, IPythonRenderer, MarkdownWithMath
 from nbgrader.preprocessors import GetGrades
 from nbgrader.utils import is_grade
-from transform_lab import panel
+from transform_lab.judging import panel
 
 from . import public_example
 from .grading import RECORD

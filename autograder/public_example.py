@@ -7,8 +7,8 @@ one of them, with the student's own answer to it, may be shown as `check` shows 
 import json
 import time
 
-from transform_lab import comparison, panel
-from transform_lab.verdict import Reply, compare, examine
+from transform_lab.judging import comparison, panel
+from transform_lab.judging.verdict import Reply, compare, examine
 
 from .outputs import printable
 

@@ -23,8 +23,9 @@ from rich.table import Table
 from autograder.exercises import EXERCISES, key  # finds transform_lab, too
 
 from transform_lab import check  # isort: skip
-from transform_lab.check import CheckFailed, call  # isort: skip
-from transform_lab.verdict import examine  # isort: skip
+from transform_lab.check import CheckFailed  # isort: skip
+from transform_lab.judging.calling import call  # isort: skip
+from transform_lab.judging.verdict import examine  # isort: skip
 
 REPEATS = 5
 

@@ -30,9 +30,9 @@ from transform_lab import (
     animate_rotation,
     tft,
 )
-from transform_lab.commands import block, changes, properties
-from transform_lab.drawing import draw
-from transform_lab.page import labels
+from transform_lab.viewing.drawing import draw
+from transform_lab.viewing.meshcat_commands import block, changes, properties
+from transform_lab.viewing.page import labels
 
 REPEATS = 7
 STEP = np.array([[0.0, -1, 0, 1], [1, 0, 0, 0], [0, 0, 1, 0.2], [0, 0, 0, 1]])

@@ -29,8 +29,8 @@ from rich.console import Console
 from rich.table import Table
 from solutions.right import NAMES, RIGHT
 from solutions.wrong import WRONG
-from transform_lab.check import call
-from transform_lab.verdict import compare, examine
+from transform_lab.judging.calling import call
+from transform_lab.judging.verdict import compare, examine
 
 from autograder.exercises import EXERCISES, PUBLIC_SEED, key
 

@@ -23,7 +23,7 @@ from transform_lab import (
     plot_quaternion,
     tft,
 )
-from transform_lab.motion import MOST_STATES, STATES, control
+from transform_lab.viewing.motion import MOST_STATES, STATES, control
 
 pytestmark = pytest.mark.filterwarnings("ignore:zmq.eventloop.ioloop is deprecated")  # by meshcat
 

@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 from IPython.core.interactiveshell import InteractiveShell
 from IPython.utils.capture import capture_output
-from transform_lab import Point, Pose, Quaternion, check, codec, comparison, once_done, panel, tft
-from transform_lab.check import CheckFailed, call
-from transform_lab.verdict import Reply, Verdict, examine
+from transform_lab import Point, Pose, Quaternion, check, once_done, tft
+from transform_lab.check import CheckFailed
+from transform_lab.judging import codec, comparison, panel
+from transform_lab.judging.calling import call
+from transform_lab.judging.verdict import Reply, Verdict, examine
 
 from autograder.exercises import EXERCISES
 

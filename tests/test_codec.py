@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from transform_lab import Point, Pose, PoseStamped, Quaternion
-from transform_lab.codec import LARGEST_ARRAY, NotPlain, Other, decode, encode
+from transform_lab.judging.codec import LARGEST_ARRAY, NotPlain, Other, decode, encode
 
 
 def there_and_back(value):

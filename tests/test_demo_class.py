@@ -9,8 +9,8 @@ from pathlib import Path
 import nbformat
 import numpy as np
 import pytest
-from transform_lab.check import call
-from transform_lab.verdict import examine
+from transform_lab.judging.calling import call
+from transform_lab.judging.verdict import examine
 
 from autograder.course import Course
 from autograder.demo import STUDENTS, Student, enroll, is_demo

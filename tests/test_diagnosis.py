@@ -9,9 +9,9 @@ from scipy.spatial.transform import Rotation
 from solutions.wrong import WRONG
 from test_exercises import NAMES, SEEDS, judged, poses
 from transform_lab import Point, Pose, Quaternion
-from transform_lab.answers import PARTS, agree, matrix_of, parts_of
-from transform_lab.diagnosis import GENERAL
-from transform_lab.verdict import Reply, examine
+from transform_lab.judging.answers import PARTS, agree, matrix_of, parts_of
+from transform_lab.judging.diagnosis import GENERAL
+from transform_lab.judging.verdict import Reply, examine
 
 from autograder.exercises import EXERCISES, PUBLIC_SEED
 

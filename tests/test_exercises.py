@@ -12,9 +12,9 @@ import pytest
 from PIL import Image
 from scipy.spatial.transform import Rotation
 from transform_lab import Point, Pose, Quaternion
-from transform_lab.answers import TOLERANCE, agree, parts_of
-from transform_lab.check import call
-from transform_lab.verdict import examine
+from transform_lab.judging.answers import TOLERANCE, agree, parts_of
+from transform_lab.judging.calling import call
+from transform_lab.judging.verdict import examine
 
 from autograder.exercises import EXERCISES, PUBLIC_SEED, key
 from autograder.exercises.__main__ import PAGE, PICTURE, page, picture

@@ -14,8 +14,8 @@ from nbgrader.api import Gradebook
 from nbgrader.coursedir import CourseDirectory
 from test_commands import run
 from test_pages import Parsed, markdown
-from transform_lab import panel
-from transform_lab.verdict import Reply, examine
+from transform_lab.judging import panel
+from transform_lab.judging.verdict import Reply, examine
 
 from autograder import api, feedback, public_example
 from autograder.api import settings

@@ -5,7 +5,7 @@ import dataclasses
 import pickle
 
 import pytest
-from transform_lab.markers import arrow_marker, axis_marker
+from transform_lab.lab_markers import arrow_marker, axis_marker
 from transform_lab.messages import ColorRGBA, Header, Marker, Point, Pose, PoseStamped, Quaternion, Vector3
 
 FIELDS = {

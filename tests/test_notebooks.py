@@ -7,7 +7,7 @@ import nbformat
 import pytest
 from conftest import ROOT
 from nbclient import NotebookClient
-from transform_lab import panel
+from transform_lab.judging import panel
 
 from autograder.check import check_files
 from autograder.course import Course

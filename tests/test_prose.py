@@ -41,8 +41,9 @@ import transform_lab
 from conftest import ROOT
 from formulas import BETWEEN, MEANT_EXACTLY, NUMBER, WORD, Unreadable, World, numbers, statements, wrong
 from scipy.spatial.transform import Rotation
-from transform_lab import shapes, tft
-from transform_lab.answers import TOLERANCE
+from transform_lab import tft
+from transform_lab.judging.answers import TOLERANCE
+from transform_lab.viewing import shapes
 
 from autograder.exercises import EXERCISES
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from conftest import ROOT
 from solutions.right import NAMES, RIGHT
-from transform_lab.verdict import examine
+from transform_lab.judging.verdict import examine
 
 from autograder.exercises import EXERCISES, key
 from autograder.sandbox import Ended, Limits, Sandbox

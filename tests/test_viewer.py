@@ -15,12 +15,14 @@ import pytest
 import umsgpack
 from conftest import CHROMIUM_FLAGS, SOFTWARE_WEBGL
 from PIL import Image
-from transform_lab import commands, drawing, page, picture, shapes, tft
-from transform_lab.camera import Camera
-from transform_lab.markers import arrow_marker, axis_marker
+from transform_lab import tft
+from transform_lab.lab_markers import arrow_marker, axis_marker
 from transform_lab.messages import ColorRGBA, Header, Marker, Point, Pose, PoseStamped, Quaternion, Vector3
-from transform_lab.page import ASPECT
-from transform_lab.viewer import Viewer
+from transform_lab.viewing import drawing, page, picture, shapes
+from transform_lab.viewing import meshcat_commands as commands
+from transform_lab.viewing.camera import Camera
+from transform_lab.viewing.page import ASPECT
+from transform_lab.viewing.viewer import Viewer
 
 pytestmark = pytest.mark.filterwarnings("ignore:zmq.eventloop.ioloop is deprecated")  # by meshcat
 

@@ -16,7 +16,7 @@ import nbformat
 import pytest
 import yaml
 from markdown_it import MarkdownIt
-from transform_lab.verdict import Verdict
+from transform_lab.judging.verdict import Verdict
 
 from autograder.check import markdown
 from autograder.judge import Row

@@ -9,9 +9,9 @@ from dataclasses import dataclass, field
 from inspect import signature
 
 import numpy as np
-from transform_lab import codec
-from transform_lab.answers import PARTS, same
-from transform_lab.diagnosis import error_of, open_parts_of
+from transform_lab.judging import codec
+from transform_lab.judging.answers import PARTS, same
+from transform_lab.judging.diagnosis import error_of, open_parts_of
 
 PUBLIC_SEED = 24  # the cases students see; any other seed draws hidden ones
 DIGITS = 12  # decimals kept of arguments and right answers: far below the tolerance of 1e-6
@@ -44,7 +44,7 @@ class Exercise:
     """One exercise.
 
     name: of the student's function, of its test cell, and of the row in every report
-    returns: the kind of answer, a key of transform_lab.answers.PARTS
+    returns: the kind of answer, a key of transform_lab.judging.answers.PARTS
     answer: its name, "b_T_a" or "p_in_a", which tells the frame it is given in; names of parameters do the same
     reference: the right solution
     cases: from a NumPy random generator to a list of Case; the same families for every seed
@@ -69,7 +69,7 @@ class Exercise:
 
 
 def key(exercise, seed):
-    """The exercise with the cases drawn from `seed`, as the plain data that `transform_lab.verdict.examine` takes."""
+    """The exercise with the cases drawn from `seed`, as the plain data that `transform_lab.judging.verdict.examine` takes."""
     cases = exercise.cases(np.random.default_rng(seed))
     return {
         "parameters": [str(p).partition("=")[0] for p in signature(exercise.reference).parameters.values()],

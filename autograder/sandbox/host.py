@@ -13,8 +13,8 @@ import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from transform_lab import codec
-from transform_lab.verdict import Reply
+from transform_lab.judging import codec
+from transform_lab.judging.verdict import Reply
 
 from ..outputs import printable
 from .account import Account

@@ -8,9 +8,9 @@ import math
 import numpy as np
 
 from . import tft
-from .shapes import ORANGE, STEEL
 from .validation import numbers, rigid_transform, row_text
-from .viewer import Viewer
+from .viewing.shapes import ORANGE, STEEL
+from .viewing.viewer import Viewer
 
 __all__ = ["animate_approach", "animate_chain", "animate_inverse", "animate_rotation"]
 

@@ -6,7 +6,7 @@ called in another process), so a student and an instructor never see two opinion
 An exercise, as `examine` takes it, is a dictionary of plain data:
 
 - `parameters`: the names of the function's parameters, a star before one that takes any number of arguments
-- `returns`: the kind of answer, one of transform_lab.answers.PARTS; `answer`: its name, such as "b_T_a"
+- `returns`: the kind of answer, one of transform_lab.judging.answers.PARTS; `answer`: its name, such as "b_T_a"
 - `credit`: {part of the answer: what that part alone is worth}, as shares of the points; all parts are worth 1
 - `weights`: {family of cases: how much it counts}
 - `misconceptions`: [{"id", "says", "hint"}, …]

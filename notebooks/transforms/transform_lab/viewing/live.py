@@ -12,8 +12,8 @@ from pathlib import Path
 import anywidget
 from IPython import get_ipython
 
-from .commands import block, changes, delete, properties
 from .drawing import draw
+from .meshcat_commands import block, changes, delete, properties
 from .page import labels
 
 PERIOD = 1 / 40  # seconds; more often than a screen shows it, nothing needs to be sent

@@ -84,7 +84,7 @@ class Diagnosis(NamedTuple):
 
 
 def diagnose(exercise, replies, outcomes):
-    """The Diagnosis of the answers to all cases of `exercise`; see transform_lab.verdict for the three arguments.
+    """The Diagnosis of the answers to all cases of `exercise`; see transform_lab.judging.verdict for the three arguments.
 
     That a call changed its arguments is said first, and hides nothing else.
     """

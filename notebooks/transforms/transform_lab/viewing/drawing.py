@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from . import tft
+from .. import tft
 from .scene import marker_name, marker_pose
 from .shapes import (
     CORNERS,

@@ -5,10 +5,10 @@ Nothing is started and nothing listens: the scene is drawn into the notebook its
 
 import inspect
 import numbers
-import os
 
 import numpy as np
 
+from ..jupyter import being_graded
 from .camera import VIEWS, Camera
 from .motion import Motion, control
 from .scene import Scene
@@ -147,7 +147,7 @@ class Viewer(Scene):
 
     def _bundle(self, live):
         bundle = {"text/plain": self.description()}
-        if not os.environ.get("TRANSFORM_LAB_GRADING"):  # nobody looks while a notebook is graded
+        if not being_graded():  # nobody looks while a notebook is graded
             bundle["text/html"] = self.figure(live)
         return bundle
 

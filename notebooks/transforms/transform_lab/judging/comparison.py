@@ -4,12 +4,13 @@ import re
 
 import numpy as np
 
-from . import codec, tft
+from .. import tft
+from ..validation import FARTHEST
+from ..viewing.drawing import round_number
+from ..viewing.shapes import X_RED, Y_GREEN, Z_BLUE
+from ..viewing.viewer import Viewer
+from . import codec
 from .answers import matrix_of, parts_of
-from .drawing import round_number
-from .shapes import X_RED, Y_GREEN, Z_BLUE
-from .validation import FARTHEST
-from .viewer import Viewer
 
 
 def scene(verdict):

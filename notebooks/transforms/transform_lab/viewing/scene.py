@@ -6,10 +6,10 @@ from numbers import Integral
 
 import numpy as np
 
-from . import tft
-from .messages import Marker
+from .. import tft
+from ..messages import Marker
+from ..validation import FARTHEST, NEAREST, numbers, rigid_transform, row_text, within_reach
 from .shapes import BROWN, ORANGE, PURPLE, STEEL, Node, draw_marker, marker_type, rgba, xyz
-from .validation import FARTHEST, NEAREST, numbers, rigid_transform, row_text, within_reach
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,8 +9,8 @@ from urllib.parse import quote
 
 import numpy as np
 
-from .messages import Marker
-from .validation import numbers, within_reach
+from ..messages import Marker
+from ..validation import numbers, within_reach
 
 X_RED, Y_GREEN, Z_BLUE = (0.84, 0.12, 0.12, 1), (0.05, 0.58, 0.15, 1), (0.12, 0.30, 0.92, 1)
 DARK = (0.15, 0.15, 0.2, 1)

@@ -18,8 +18,8 @@ from pathlib import Path
 import numpy as np
 
 from .camera import FIELD_OF_VIEW, NEAREST, VIEWS, Camera
-from .commands import block, changes, delete, properties, set_object, set_property, set_transform
 from .drawing import grid
+from .meshcat_commands import block, changes, delete, properties, set_object, set_property, set_transform
 from .shapes import BESIDE
 from .shapes import path as node_path
 

@@ -17,7 +17,7 @@ import math
 
 import numpy as np
 
-from . import messages
+from .. import messages
 
 LARGEST_ARRAY = 1_000  # numbers; the largest right answer has 16
 LONGEST_LIST = 100
