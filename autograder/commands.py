@@ -13,7 +13,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from .course import ASSIGNMENT, Course, CourseError, replace
+from .course import ASSIGNMENT, Course, CourseError
+from .files import replace
 
 console = Console(highlight=False, soft_wrap=True)
 errors = Console(stderr=True, highlight=False, soft_wrap=True)
@@ -98,7 +99,10 @@ def _parser():
         "--format", choices=("plain", "canvas", "moodle"), default="plain", help="columns (default: plain)"
     )
     sub.add_argument(
-        "--column", metavar="NAME", default=ASSIGNMENT, help=f"the assignment's name in the LMS (default: {ASSIGNMENT})"
+        "--column",
+        metavar="NAME",
+        default=ASSIGNMENT,
+        help=f"the grading_run's name in the LMS (default: {ASSIGNMENT})",
     )
     sub.add_argument("--output", type=Path, default=Path("-"), help="a file (default: print)")
     add("test", test, "run all tests; other options are passed on to pytest")
@@ -136,7 +140,7 @@ def lab(options):
 
 
 def release(options):
-    from .release import release as make
+    from .handout.release import release as make
 
     changes = make(course())
     for change in changes:
@@ -146,7 +150,7 @@ def release(options):
 
 
 def package(options):
-    from .package import for_gradescope, for_students, write
+    from .handout.package import for_gradescope, for_students, write
 
     here = course()
     folder, only = options.output, options.output.suffix == ".zip" and not options.output.is_dir()
@@ -158,7 +162,7 @@ def package(options):
         path = folder / f"{ASSIGNMENT}-gradescope.zip"
         write(path, for_gradescope(here))
         console.print(
-            f"{path}: the autograder, for a programming assignment on Gradescope (base image: Ubuntu 24.04 or newer). "
+            f"{path}: the autograder, for a programming grading_run on Gradescope (base image: Ubuntu 24.04 or newer). "
             "It holds the solutions: keep it to yourself.",
             markup=False,
         )
@@ -173,8 +177,8 @@ def grade(options):
 
     here = course()
     ForkServer.serving(here.package)  # loads while the rest is loaded here
-    from . import gradebook  # noqa: F401 (takes as long as the fork server's start)
-    from .workers import Cluster
+    from .bridge import gradebook  # noqa: F401 (takes as long as the fork server's start)
+    from .grading.workers import Cluster
 
     students = here.students()
     chosen = list(dict.fromkeys(options.students)) or students
@@ -215,15 +219,15 @@ def _protection(here, unsafe, cluster=None):
 
 def _grade(here, students, protected, seed=None, jobs=os.cpu_count(), force=False, with_feedback=True, cluster=None):
     """Grade, record, write feedback and report; returns the students who could not be graded."""
-    from . import report
-    from .classroom import grade_class
-    from .gradebook import Writer
-    from .grading import assignment, new_seed
+    from .bridge.gradebook import Writer
+    from .grading.classroom import grade_class
+    from .grading.grade import grading_run, new_seed
+    from .pages import report
 
     seed = new_seed() if seed is None else seed
     failed, fresh, counts = [], [], Counter()
     with here.one_grader_at_a_time(_busy), Writer(here) as writer:
-        against = assignment(here, seed, isolated=protected)
+        against = grading_run(here, seed, isolated=protected)
         with _progress() as progress:
             bar = progress.add_task("grading", total=len(students), counts="")
             for student, graded, problem in grade_class(here, students, against, writer, jobs, force, cluster):
@@ -260,7 +264,7 @@ def _grade(here, students, protected, seed=None, jobs=os.cpu_count(), force=Fals
 
 
 def _write_feedback(here, grades, jobs):
-    from . import feedback
+    from .pages import feedback
 
     wanted = {student: told for student, told in grades.items() if not feedback.is_complete(here, student, told)}
     with _progress() as progress:
@@ -314,8 +318,8 @@ def _show_class(found, students):
 
 
 def report(options):
-    from . import report
-    from .gradebook import Writer
+    from .bridge.gradebook import Writer
+    from .pages import report
 
     here = course()
     with Writer(here) as writer:
@@ -326,10 +330,11 @@ def report(options):
 
 
 def demo(options):
-    from . import report, sandbox
+    from . import sandbox
+    from .bridge.gradebook import Writer
     from .demo import enroll, is_demo
-    from .gradebook import Writer
-    from .release import release as make
+    from .handout.release import release as make
+    from .pages import report
 
     here = course()
     if options.remove:
@@ -367,7 +372,7 @@ def check(options):
 
     from transform_lab.judging import panel
 
-    from .check import check_files, markdown, points
+    from .grading.one_student import check_files, markdown, points
 
     protected = _protection(here, options.unsafe_no_sandbox)
     found, refused, said = check_files(here, options.notebooks, options.seed, protected)
@@ -396,12 +401,12 @@ def doctor(options):
 
 
 def export(options):
-    from . import export
-    from .gradebook import Writer
+    from .bridge.gradebook import Writer
+    from .pages import export
 
     here = course()
     with Writer(here) as writer:
-        found = export.collect(writer.gradebook)
+        found = export.totals(writer.gradebook)
         text = export.text(here, writer.gradebook, found, options.format, options.column)
         lines = list(export.remarks(found, options.format))
     if str(options.output) == "-":

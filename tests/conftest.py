@@ -18,7 +18,7 @@ os.environ["PATH"] = f"{Path(os.sys.prefix, 'bin')}{os.pathsep}{os.environ['PATH
 def released(tmp_path_factory):
     """A course in which the assignment was released; not to be changed by tests."""
     from autograder.course import Course
-    from autograder.release import release
+    from autograder.handout.release import release
 
     root = tmp_path_factory.mktemp("course") / "released"
     shutil.copytree(ROOT, root, ignore=shutil.ignore_patterns(*MADE_AT_RUN_TIME, ".pytest_cache"))

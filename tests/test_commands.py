@@ -11,9 +11,9 @@ from pathlib import Path
 import nbformat
 import pytest
 
+from autograder.bridge.gradebook import Writer
 from autograder.course import Course
 from autograder.exercises import EXERCISES
-from autograder.gradebook import Writer
 
 
 def run(course, *arguments, path=None):

@@ -27,7 +27,7 @@ each_student = pytest.mark.parametrize("path", PATHS, ids=lambda path: path.stem
 @pytest.fixture(scope="session")
 def course(tmp_path_factory):
     """A course of its own, released, with the class enrolled."""
-    from autograder.release import release
+    from autograder.handout.release import release
 
     root = tmp_path_factory.mktemp("course")
     shutil.copytree(ROOT / "source", root / "source", ignore=shutil.ignore_patterns("__pycache__"))

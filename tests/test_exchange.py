@@ -16,8 +16,9 @@ from nbgrader.api import Gradebook
 from nbgrader.apps import NbGraderApp
 from test_commands import run, scores
 
-from autograder.course import ASSIGNMENT, Released
+from autograder.course import ASSIGNMENT
 from autograder.demo import STUDENTS, Student
+from autograder.released import Released
 
 ONE, TWO = "1_rotation", "2_homogeneous_transforms"
 

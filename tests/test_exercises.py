@@ -9,6 +9,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from conftest import ROOT
 from PIL import Image
 from scipy.spatial.transform import Rotation
 from transform_lab import Point, Pose, Quaternion
@@ -17,8 +18,8 @@ from transform_lab.judging.calling import call
 from transform_lab.judging.verdict import examine
 
 from autograder.exercises import EXERCISES, PUBLIC_SEED, key
-from autograder.exercises.__main__ import PAGE, PICTURE, page, picture
 from autograder.exercises.cases import either_sign, half_turn
+from autograder.handout.exercises_page import PAGE, PICTURE, page, picture
 
 pytestmark = pytest.mark.filterwarnings("ignore:the matrix subclass")  # np.matrix, which students still use
 
@@ -372,13 +373,13 @@ def test_credit_is_counted_by_families_and_their_weights(name):
 
 def test_the_picture_in_the_readme_is_up_to_date():
     kept, now = (np.array(Image.open(file).convert("L")).astype(int) for file in (PICTURE, io.BytesIO(picture())))
-    assert (np.abs(kept - now) > 40).mean() < 0.002, "run `.venv/bin/python -m autograder.exercises`"
+    assert (np.abs(kept - now) > 40).mean() < 0.002, "run `.venv/bin/python -m autograder.handout.exercises_page`"
     assert PICTURE.stat().st_size < 40_000
 
 
 def test_the_page_for_instructors_is_up_to_date():
-    text = PAGE.read_text(encoding="utf-8")
-    assert text == page(), "run `.venv/bin/python -m autograder.exercises`"
+    text = (ROOT / PAGE).read_text(encoding="utf-8")
+    assert text == page(), "run `python3 -m autograder release`"
     for exercise in EXERCISES.values():
         for misconception in exercise.misconceptions:
             assert misconception.says.replace("\n", "<br>") in text and misconception.hint.replace("\n", "<br>") in text

@@ -6,12 +6,12 @@ import io
 import pytest
 from test_commands import run
 
-from autograder import export
+from autograder.bridge.gradebook import Writer
 from autograder.course import CourseError
-from autograder.gradebook import Writer
-from autograder.grading import Graded
-from autograder.judge import Row
-from autograder.marks import Marks
+from autograder.grading.grade import Graded
+from autograder.grading.judge import Row
+from autograder.grading.marks import Marks
+from autograder.pages import export
 
 PEOPLE = {
     "ada": {"first_name": "Ada", "last_name": "Lovelace", "email": "ada@example.org", "lms_user_id": "1815"},

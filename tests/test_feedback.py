@@ -17,13 +17,15 @@ from test_pages import Parsed, markdown
 from transform_lab.judging import panel
 from transform_lab.judging.verdict import Reply, examine
 
-from autograder import api, feedback, public_example
-from autograder.api import settings
+from autograder.bridge import nbgrader_api as api
+from autograder.bridge.gradebook import Writer
+from autograder.bridge.nbgrader_api import settings
 from autograder.course import ASSIGNMENT, Course
 from autograder.exercises import EXERCISES, key
-from autograder.gradebook import Writer
-from autograder.grading import RECORD, recorded
-from autograder.pages import LEFT_OUT
+from autograder.grading import public_example
+from autograder.grading.records import RECORD, recorded
+from autograder.pages import feedback
+from autograder.pages.exporter import LEFT_OUT
 
 TWO, FIVE = "2_homogeneous_transforms", "5_pre_grasp"
 MOST = 1_500_000  # bytes of a student's feedback

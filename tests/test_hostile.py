@@ -23,14 +23,14 @@ from pathlib import Path
 import nbformat
 import pytest
 
-from autograder.classroom import grade_class
+from autograder.bridge.gradebook import Writer
 from autograder.course import Course
-from autograder.export import collect
-from autograder.gradebook import Writer
-from autograder.grading import assignment
-from autograder.intake import restore
-from autograder.outputs import PICTURES, TEXT
+from autograder.grading.classroom import grade_class
+from autograder.grading.grade import grading_run
+from autograder.intake.restore import restore
+from autograder.pages.export import totals
 from autograder.sandbox import Limits
+from autograder.untrusted import PICTURES, TEXT
 
 ONE = "1_rotation"
 EXERCISES = ("rotation_about_z", "rotation_from_axes", "is_rotation", "same_rotation")
@@ -1441,9 +1441,9 @@ def grade(attacks, released, root, limits):
         students.insert(len(students) // 2, HONEST)
         leftovers.look()
         with Writer(course) as writer:
-            against = assignment(course, seed=7, limits=limits)
+            against = grading_run(course, seed=7, limits=limits)
             found = {student: rest for student, *rest in grade_class(course, students, against, writer, jobs=2)}
-            points = {found.student.id: found.score for found in collect(writer.gradebook)}
+            points = {found.student.id: found.score for found in totals(writer.gradebook)}
         left = [*leftovers.found(), *listeners.reached()]
     return Graded(course, found, points, left)
 

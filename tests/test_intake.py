@@ -7,9 +7,9 @@ import nbformat
 import pytest
 from conftest import ROOT
 
-from autograder import intake as intake_module
 from autograder.course import Course
-from autograder.intake import restore
+from autograder.intake import restore as intake_module
+from autograder.intake.restore import restore
 
 
 @pytest.fixture(scope="module")

@@ -13,7 +13,7 @@ import pytest
 from nbgrader.api import Gradebook
 from nbgrader.coursedir import CourseDirectory
 
-from autograder.api import settings
+from autograder.bridge.nbgrader_api import settings
 from autograder.course import ASSIGNMENT, Course
 from autograder.demo import enroll
 

@@ -9,12 +9,12 @@ from conftest import ROOT
 from nbclient import NotebookClient
 from transform_lab.judging import panel
 
-from autograder.check import check_files
 from autograder.course import Course
-from autograder.grading import assignment
-from autograder.intake import restore
-from autograder.judge import judge
-from autograder.submission import Submission
+from autograder.grading.grade import grading_run
+from autograder.grading.judge import judge
+from autograder.grading.one_student import check_files
+from autograder.intake.restore import restore
+from autograder.intake.submission import Submission
 
 SOLVED = sorted((ROOT / "source/transforms").glob("*.ipynb"))
 PICTURE = re.compile(r"<img [^>]*>|<iframe (?:[^>\"]|\"[^\"]*\")*>")
@@ -49,7 +49,7 @@ def test_the_solved_notebooks_earn_everything_in_the_sandbox(sandboxed):
 
 
 def test_no_cell_of_a_solved_notebook_fails_in_the_sandbox(sandboxed):
-    against = assignment(Course(ROOT), seed=1)
+    against = grading_run(Course(ROOT), seed=1)
     with against.sandbox(Submission("", {})) as sandbox:
         for path in SOLVED:
             intake = restore(path.read_bytes(), against.released[path.stem])
@@ -116,7 +116,7 @@ def test_headings_are_in_order(path):
 
 
 def test_a_page_can_be_made_in_the_sandbox_when_a_cell_asks_for_it(sandboxed):
-    against = assignment(Course(ROOT), seed=1)
+    against = grading_run(Course(ROOT), seed=1)
     with against.sandbox(Submission("", {})) as sandbox, sandbox.notebook(time.monotonic() + 60) as process:
         run = process.run_cell("from transform_lab import Viewer\nlen(Viewer().html()) > 100_000")
         assert [output["data"]["text/plain"] for output in run.outputs] == ["True"]

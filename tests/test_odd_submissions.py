@@ -10,12 +10,12 @@ import pytest
 from test_commands import run, scores, statuses
 from test_nbgrader import marks, nbgrader
 
-from autograder import workers
-from autograder.classroom import grade_class
-from autograder.gradebook import Writer
-from autograder.grading import assignment, grade_submission
+from autograder.bridge.gradebook import Writer
+from autograder.grading import workers
+from autograder.grading.classroom import grade_class
+from autograder.grading.grade import grade_submission, grading_run
+from autograder.intake.submission import submission_of
 from autograder.sandbox import Limits
-from autograder.submission import collect
 
 ONE = "1_rotation"
 
@@ -116,7 +116,7 @@ def test_a_withdrawn_submission_keeps_no_feedback(course, hand_in, solved, sandb
 def test_marks_that_were_not_written_are_written_next_time(course, hand_in, solved, sandboxed, monkeypatch):
     """The grader stops between a student's files and marks: the next run does not take the student for graded."""
     hand_in(course, "ann", {ONE: solved[ONE]})
-    against = assignment(course, seed=1)
+    against = grading_run(course, seed=1)
 
     def interrupted(self, graded):
         self.gradebook.update_or_create_student(graded.student)
@@ -127,7 +127,7 @@ def test_marks_that_were_not_written_are_written_next_time(course, hand_in, solv
         with monkeypatch.context() as patched:
             patched.setattr(Writer, "_write_marks", interrupted)
             with pytest.raises(KeyboardInterrupt):
-                writer.record(grade_submission(collect(course, "ann"), against))
+                writer.record(grade_submission(submission_of(course, "ann"), against))
         ((student, graded, problem),) = grade_class(course, ["ann"], against, writer, jobs=1)
     assert graded is not None and problem is None
     assert "ann,7.0" in run(course, "export")[1]
@@ -148,7 +148,7 @@ def test_a_worker_that_dies_costs_only_its_own_submission(course, hand_in, solve
         found = {
             student: (graded, problem)
             for student, graded, problem in grade_class(
-                course, course.students(), assignment(course, 1), writer, jobs=2
+                course, course.students(), grading_run(course, 1), writer, jobs=2
             )
         }
     assert "is there enough memory?" in found["bad"][1]
@@ -161,8 +161,8 @@ def test_a_slow_notebook_costs_itself_alone(course, hand_in, solved, sandboxed):
     notebook = nbformat.read(solved[ONE], as_version=4)
     notebook.cells.insert(1, nbformat.v4.new_code_cell("import time\ntime.sleep(60)"))
     hand_in(course, "ann", {**solved, ONE: notebook})
-    against = assignment(course, seed=1, limits=Limits(notebook=15, cell=60, grace=1))
-    graded = grade_submission(collect(course, "ann"), against)
+    against = grading_run(course, seed=1, limits=Limits(notebook=15, cell=60, grace=1))
+    graded = grade_submission(submission_of(course, "ann"), against)
     earned = {row.exercise: (row.score, row.status) for row in graded.rows}
     assert earned["rotation_about_z"] == (0.0, "timeout")
     assert sum(row.score for row in graded.rows if row.notebook != ONE) == 27

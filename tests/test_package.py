@@ -19,9 +19,10 @@ import nbformat
 import pytest
 from test_commands import run
 
-from autograder import environment, package
+from autograder import environment
 from autograder.course import Course, CourseError
 from autograder.exercises import EXERCISES
+from autograder.handout import package
 
 VISIBILITY = {"enum": ["hidden", "after_due_date", "after_published", "visible"]}
 FORMAT = {"enum": ["text", "html", "simple_format", "md", "ansi"]}

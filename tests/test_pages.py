@@ -8,7 +8,7 @@ import nbformat
 import pytest
 from test_commands import run
 
-from autograder.pages import markdown2html
+from autograder.pages.markdown import markdown2html
 
 ONE = "1_rotation"
 PIXEL = base64.b64encode(b"\x89PNG\r\n\x1a\n" + bytes(20)).decode()

@@ -9,7 +9,7 @@ from conftest import ROOT
 
 from autograder.course import Course, CourseError
 from autograder.exercises import EXERCISES, key
-from autograder.release import public_key, release
+from autograder.handout.release import public_key, release
 
 
 def contents(folder):

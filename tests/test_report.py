@@ -12,13 +12,14 @@ import pytest
 from test_commands import run, verdicts
 from test_nbgrader import nbgrader
 
-from autograder import findings, report
+from autograder.bridge.gradebook import Writer
 from autograder.course import Course
 from autograder.demo import STUDENTS, Student
-from autograder.findings import Work
-from autograder.gradebook import Writer
-from autograder.grading import missing
-from autograder.judge import Row
+from autograder.grading.judge import Row
+from autograder.grading.records import missing
+from autograder.pages import report
+from autograder.pages import report_data as findings
+from autograder.pages.report_data import Work
 
 MARKUP = "<img src=x onerror=alert(1)>"  # a student's name, and what they write
 

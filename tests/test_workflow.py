@@ -18,8 +18,8 @@ import yaml
 from markdown_it import MarkdownIt
 from transform_lab.judging.verdict import Verdict
 
-from autograder.check import markdown
-from autograder.judge import Row
+from autograder.grading.judge import Row
+from autograder.grading.one_student import markdown
 
 WORKFLOWS = Path(__file__).parent.parent / ".github" / "workflows"
 CHECK = yaml.safe_load((WORKFLOWS / "check.yml").read_text())
