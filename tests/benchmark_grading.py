@@ -25,8 +25,11 @@ import psutil
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
-from conftest import MADE_AT_RUN_TIME  # noqa: E402
-from test_nbgrader import marks, without_plugin  # noqa: E402
+from support import (  # noqa: E402
+    MADE_AT_RUN_TIME,  # noqa: E402
+    marks,
+    without_plugin,
+)
 
 from autograder.bridge.gradebook import Writer  # noqa: E402
 from autograder.course import ASSIGNMENT, Course  # noqa: E402

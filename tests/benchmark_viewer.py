@@ -88,13 +88,16 @@ def kernel_rate(seconds=2):
 
 def browser_rate():
     """How many changes a second are drawn in JupyterLab while the slider of notebook 1 is dragged."""
+    from jupyter_lab import Opened, Server
     from playwright.sync_api import sync_playwright
-    from test_browser import FLAGS, Opened, Server
+    from support import CHROMIUM_FLAGS, SOFTWARE_WEBGL
 
     server = Server(Path(tempfile.mkdtemp()) / "work")
     try:
         with sync_playwright() as playwright:
-            browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
+            browser = playwright.chromium.launch(
+                executable_path=shutil.which("chromium"), args=[*CHROMIUM_FLAGS, *SOFTWARE_WEBGL]
+            )
             page = browser.new_page(viewport={"width": 1100, "height": 900})
             notebook = Opened(page, server, "1_rotation")
             notebook.run_all()

@@ -8,9 +8,8 @@ import tempfile
 from pathlib import Path
 
 import pytest
+from support import CHROMIUM_FLAGS, MADE_AT_RUN_TIME, ROOT, SOFTWARE_WEBGL, lacking
 
-ROOT = Path(__file__).resolve().parent.parent
-MADE_AT_RUN_TIME = (".git", ".venv", "submitted", "autograded", "feedback", "reports", "gradebook.db", "__pycache__")
 os.environ["PATH"] = f"{Path(os.sys.prefix, 'bin')}{os.pathsep}{os.environ['PATH']}"  # nbgrader runs alembic by name
 
 
@@ -34,19 +33,6 @@ def course(released, tmp_path):
 
     shutil.copytree(released.root, tmp_path / "course")
     return Course(tmp_path / "course")
-
-
-SOFTWARE_WEBGL = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-CHROMIUM_FLAGS = (
-    "--no-sandbox --disable-gpu --disable-background-networking --disable-component-update --disable-sync --no-first-run"
-).split()
-
-
-def lacking(what):
-    """Skip a test for want of something this machine does not have; in CI that is a failure."""
-    if os.environ.get("CI") == "true":
-        pytest.fail(what)
-    pytest.skip(what)
 
 
 @pytest.fixture(scope="session")

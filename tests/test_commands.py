@@ -1,6 +1,5 @@
 """The command line as an instructor uses it: what it says, what it writes, and what it does with bad input."""
 
-import csv
 import json
 import os
 import shutil
@@ -10,38 +9,10 @@ from pathlib import Path
 
 import nbformat
 import pytest
+from support import run, scores, statuses, verdicts
 
 from autograder.bridge.gradebook import Writer
-from autograder.course import Course
 from autograder.exercises import EXERCISES
-
-
-def run(course, *arguments, path=None):
-    """Run `python3 -m autograder …` in a course; (exit code, all that was printed)."""
-    environment = {**os.environ, "COLUMNS": "200"}
-    if path is not None:
-        environment["PATH"] = path
-    root = course.root if isinstance(course, Course) else course
-    result = subprocess.run(
-        [sys.executable, "-m", "autograder", *arguments],
-        cwd=root, env=environment, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=600,
-    )  # fmt: skip
-    said = result.stdout + result.stderr
-    assert "Traceback (most recent call last)" not in said, said
-    return result.returncode, said
-
-
-def verdicts(course):
-    with open(course.reports / "verdicts.csv", newline="") as file:
-        return list(csv.DictReader(file))
-
-
-def scores(course, student):
-    return {row["exercise"]: float(row["score"]) for row in verdicts(course) if row["student"] == student}
-
-
-def statuses(course, student):
-    return {row["exercise"]: row["status"] for row in verdicts(course) if row["student"] == student}
 
 
 @pytest.fixture
