@@ -14,7 +14,7 @@ from nbgrader.utils import is_grade
 
 from ..grading.records import RECORD
 from . import examples
-from .templates import points
+from .rendering import points
 
 TEMPLATE = Path(__file__).parent / "templates" / "feedback.html.j2"
 LARGEST_PAGE = 280_000  # bytes; five of them and the summary stay below 1.5 MB

@@ -18,7 +18,7 @@ from ..grading.records import recorded
 from ..grading.workers import end_with_parent
 from ..released import without_points
 from .markdown import heading
-from .templates import environment
+from .rendering import environment
 
 SUMMARY = "index.html"
 

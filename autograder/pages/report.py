@@ -19,7 +19,7 @@ from ..files import replace
 from ..grading.judge import Row
 from . import examples
 from . import report_data as findings
-from .templates import environment
+from .rendering import environment
 
 COLUMNS = ("student", *(field.name for field in fields(Row)))
 MOST_PICTURES = 10
