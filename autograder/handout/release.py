@@ -29,8 +29,20 @@ def public_key(course):
     if absent:
         raise CourseError(f"The notebooks in source/{ASSIGNMENT} have no test cell for: {', '.join(absent)}.")
     exercises = {name: {"points": points[name], **key(EXERCISES[name], PUBLIC_SEED)} for name in points}
-    found = {"notebooks": notebooks, "exercises": exercises}
-    return json.dumps(found, ensure_ascii=False, separators=(",", ":")) + "\n"
+    return f'{{"notebooks":{_json(notebooks)},\n"exercises":{{\n{_by_line(exercises)}\n}}}}\n'
+
+
+def _by_line(exercises):
+    """The exercises as JSON with a case a line, so that a change of one is seen as such."""
+    texts = []
+    for name, exercise in exercises.items():
+        cases = ",\n".join(map(_json, exercise["cases"]))
+        texts.append(f"{_json(name)}:{_json({**exercise, 'cases': []})[:-2]}\n{cases}\n]}}")
+    return ",\n".join(texts)
+
+
+def _json(plain):
+    return json.dumps(plain, ensure_ascii=False, separators=(",", ":"))
 
 
 def release(course):
