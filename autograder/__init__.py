@@ -13,4 +13,4 @@ if _SOURCE not in sys.path:
 
 # nbformat imports jsonschema, and jsonschema this one, which takes a second to build a grammar of international web
 # addresses. No notebook's schema asks for them, and jsonschema does without.
-sys.modules.setdefault("rfc3987_syntax", None)
+sys.modules.setdefault("rfc3987_syntax", None)  # type: ignore[arg-type]  # None: it cannot be imported

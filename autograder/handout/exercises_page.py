@@ -41,7 +41,7 @@ def picture():
 
 def _described(exercise):
     public = key(exercise, PUBLIC_SEED)
-    rows = {}
+    rows: dict = {}
     for misconception in exercise.misconceptions:
         row = (misconception.id, *(text.replace("\n", "<br>") for text in (misconception.says, misconception.hint)))
         rows.setdefault(row, []).append(_earned(exercise, public, misconception))

@@ -23,7 +23,7 @@ from autograder.course import ASSIGNMENT, Course
 from autograder.exercises import EXERCISES, key
 from autograder.grading import public_example
 from autograder.grading.records import RECORD, recorded
-from autograder.pages import feedback
+from autograder.pages import examples, feedback
 from autograder.pages.exporter import LEFT_OUT
 
 TWO, FIVE = "2_homogeneous_transforms", "5_pre_grasp"
@@ -34,7 +34,7 @@ TWO_MISTAKES = """def pre_grasp(object_pose, distance=0.1):
     return object_pose
 """
 PUBLIC_ANSWERS_ONLY = f"""import json
-from transform_lab import codec
+from transform_lab.judging import codec
 KNOWN = json.loads({json.dumps([(c["args"], c["expected"]) for c in key(EXERCISES["transform_point"], 24)["cases"]])!r})
 def transform_point(a_T_b, p_in_b):
     for given, expected in KNOWN:
@@ -185,7 +185,7 @@ def test_an_answer_that_no_file_can_hold_is_no_example():
     assert public_example.find(wrong, exercise, lambda args, kwargs: Reply("returned", [float("nan")], given)) is None
     assert public_example.find(wrong, exercise, lambda args, kwargs: Reply("timeout")) is None
     found = public_example.find(wrong, exercise, lambda args, kwargs: Reply("raised", error="ValueError: <b>no</b>"))
-    assert "ValueError: &lt;b&gt;no&lt;/b&gt;" in public_example.html("chain", found)
+    assert "ValueError: &lt;b&gt;no&lt;/b&gt;" in examples.of_answer("chain", found)
 
 
 DAMAGED = [
@@ -204,7 +204,7 @@ DAMAGED = [
 @pytest.mark.parametrize("damaged", DAMAGED)
 def test_a_damaged_example_is_one_of_the_errors_that_are_expected(damaged):
     with pytest.raises((AttributeError, LookupError, TypeError, ValueError)):
-        public_example.html("chain", damaged)
+        examples.of_answer("chain", damaged)
 
 
 def test_a_damaged_record_costs_the_example_alone(course_of_ben):

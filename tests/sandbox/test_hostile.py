@@ -142,7 +142,7 @@ CHECKS = [
         "the judge's modules patched",
         """
         import sys
-        from transform_lab import answers, diagnosis, verdict
+        from transform_lab.judging import answers, diagnosis, verdict
         answers.agree = verdict.agree = lambda *a: True
         answers.TOLERANCE = 1e9
         diagnosis.constant = verdict.constant = lambda *a: False

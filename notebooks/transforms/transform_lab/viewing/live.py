@@ -18,7 +18,7 @@ from .page import labels
 
 PERIOD = 1 / 40  # seconds; more often than a screen shows it, nothing needs to be sent
 EVERYTHING = ("frames", "links", "points", "arrows", "boxes", "grippers", "markers")
-_links = {}  # by their names
+_links: dict = {}  # by their names
 
 
 def has_kernel():
@@ -26,7 +26,7 @@ def has_kernel():
     return hasattr(get_ipython(), "kernel")
 
 
-class Channel(anywidget.AnyWidget):
+class LiveWidget(anywidget.AnyWidget):
     """Runs live.js in the notebook's window, once for all scenes. It is not displayed and keeps nothing."""
 
     _esm = Path(__file__).with_name("live.js").read_text(encoding="utf-8")
@@ -34,8 +34,8 @@ class Channel(anywidget.AnyWidget):
 
 @cache
 def channel():
-    """Return the kernel's only Channel."""
-    made = Channel()
+    """Return the kernel's only LiveWidget."""
+    made = LiveWidget()
     made.on_msg(lambda _, message, __: message.get("scene") in _links and _links[message["scene"]].receive(message))
     return made
 

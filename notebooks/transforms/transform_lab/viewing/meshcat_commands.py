@@ -15,7 +15,7 @@ GRID_COLOR = 0xD8DCE2
 
 def properties(nodes):
     """Return what meshcat holds of `nodes`: for each path the last look (None for a mere place) and 4x4 matrix."""
-    found = {}
+    found: dict[str, tuple] = {}
     for node in nodes:
         here = f"meshcat/{node.path}"
         found[here] = None, node.transform

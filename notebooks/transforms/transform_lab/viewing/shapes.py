@@ -200,8 +200,8 @@ def draw_marker(marker, node):
         if len(points) != 2:
             raise ValueError(f"an ARROW takes two points (tail and tip) or none; got {len(points)}")
         _need_size(size[:2], "scale.x (shaft diameter) and scale.y (head diameter)")
-        length = np.linalg.norm(points[1] - points[0])
-        node.solids += arrow(*points, color, size[0], size[1], size[2] or 0.23 * length)
+        tail, tip = points
+        node.solids += arrow(tail, tip, color, size[0], size[1], size[2] or 0.23 * np.linalg.norm(tip - tail))
     elif kind == Marker.ARROW:
         _need_size(size[:2], "scale.x (length) and scale.y (width)")
         node.solids += arrow((0, 0, 0), (size[0], 0, 0), color, size[1], 2 * size[1], 0.23 * size[0])

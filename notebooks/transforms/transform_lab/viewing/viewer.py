@@ -68,7 +68,7 @@ class Viewer(Scene):
         viewer holds, what there is to see then. What it returns is shown as text. The picture shows the end. Returns the
         viewer.
         """
-        if not isinstance(seconds, numbers.Real) or not 0 < seconds < 3600:
+        if not isinstance(seconds, numbers.Real) or not 0 < float(seconds) < 3600:
             raise ValueError(f"animate: seconds must be a number above 0; got {seconds!r}")
         return self._move(Motion(function, seconds=float(seconds)))
 
