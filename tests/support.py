@@ -18,6 +18,7 @@ from autograder.bridge.nbgrader_api import settings
 from autograder.course import ASSIGNMENT, Course
 from autograder.exercises import EXERCISES, PUBLIC_SEED, key
 from autograder.pages.markdown import markdown2html
+from autograder.released import Released
 
 ROOT = Path(__file__).resolve().parent.parent
 MADE_AT_RUN_TIME = (".git", ".venv", "submitted", "autograded", "feedback", "reports", "gradebook.db", "__pycache__")
@@ -27,6 +28,23 @@ CHROMIUM_FLAGS = (
 ).split()
 SEEDS = (PUBLIC_SEED, 1, 7, 20_170_424, 987_654_321)
 _keys = {}
+
+# What the course asks for, read from its notebooks: {notebook: Released}
+ASKED = {
+    path.stem: Released(path.stem, path.read_text(encoding="utf-8"))
+    for path in sorted((ROOT / "source" / ASSIGNMENT).glob("*.ipynb"))
+}
+NAMES = [name for notebook in ASKED.values() for name in notebook.points]  # of the exercises that are asked, in order
+
+
+def points(*notebooks):
+    """The points of the exercises in these notebooks, or in all of them."""
+    return sum(sum(ASKED[notebook].points.values()) for notebook in notebooks or ASKED)
+
+
+def points_by_hand(*notebooks):
+    """The points of the questions that a person grades in these notebooks, or in all of them."""
+    return sum(sum(ASKED[notebook].questions.values()) for notebook in notebooks or ASKED)
 
 
 def lacking(what):

@@ -17,11 +17,10 @@ from pathlib import Path
 import jsonschema
 import nbformat
 import pytest
-from support import run
+from support import ASKED, NAMES, points, points_by_hand, run
 
 from autograder import environment
 from autograder.course import Course, CourseError
-from autograder.exercises import EXERCISES
 from autograder.handout import package
 
 VISIBILITY = {"enum": ["hidden", "after_due_date", "after_published", "visible"]}
@@ -236,9 +235,12 @@ def wrong(notebook, grade_id, code):
 
 def test_a_solved_submission_earns_everything(gradescope, solutions):
     results = gradescope.grade(solutions)
-    assert results["score"] == 34 and [test["status"] for test in results["tests"]] == ["passed"] * 16
-    assert list(scores(results)) == list(EXERCISES)
-    assert results["output"] == "The 3 written questions (6 points) are graded by hand and not counted here."
+    assert results["score"] == points() and {test["status"] for test in results["tests"]} == {"passed"}
+    assert list(scores(results)) == NAMES
+    assert results["output"] == (
+        f"The {sum(len(notebook.questions) for notebook in ASKED.values())} written questions ({points_by_hand():g} points) "
+        "are graded by hand and not counted here."
+    )
     assert results["stdout_visibility"] == "hidden"
     assert (gradescope.folder.stat().st_mode & 0o777) == 0o700
 
@@ -282,13 +284,13 @@ def test_a_mixed_submission(gradescope, solutions, released):
 def test_nothing_that_can_be_graded(gradescope, solutions):
     for files in ({}, {"answers.txt": b"42"}, {".git/1_rotation.ipynb": b"{}"}):
         results = gradescope.grade(files)
-        assert results["score"] == 0 and len(results["tests"]) == 16
+        assert results["score"] == 0 and len(results["tests"]) == len(NAMES)
         assert "No notebook of this assignment was found. Hand them in under their own names" in results["output"]
 
 
 def test_notebooks_in_a_folder_are_found(gradescope, solutions):
     files = {"__MACOSX/1_rotation.ipynb": b"{}", "my work/1_rotation.ipynb": solutions["1_rotation.ipynb"]}
-    assert gradescope.grade(files)["score"] == 7
+    assert gradescope.grade(files)["score"] == points("1_rotation")
 
 
 def test_hostile_work_earns_what_its_honest_part_earns(gradescope, solutions):
@@ -304,7 +306,7 @@ def test_hostile_work_earns_what_its_honest_part_earns(gradescope, solutions):
         """
     attacked = wrong(solutions["1_rotation.ipynb"], "is_rotation", textwrap.dedent(attack))
     results = gradescope.grade({"1_rotation.ipynb": attacked})
-    assert results["score"] == 7 and len(results["tests"]) == 16
+    assert results["score"] == points("1_rotation") and len(results["tests"]) == len(NAMES)
 
 
 def test_whatever_goes_wrong_there_is_a_result(released, solutions, tmp_path_factory):

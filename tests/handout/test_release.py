@@ -5,7 +5,7 @@ import json
 
 import nbformat
 import pytest
-from support import ROOT
+from support import NAMES, ROOT, points, points_by_hand
 
 from autograder.course import Course, CourseError
 from autograder.exercises import EXERCISES, key
@@ -62,16 +62,16 @@ def test_every_exercise_has_one_test_cell_of_one_line():
                 assert cell.source == f'check("{name}", {name})'
                 assert (meta["grade"], meta["locked"], meta["solution"]) == (True, True, False)
                 found.append(name)
-    assert found == list(EXERCISES)
+    assert found == NAMES == [name for name in EXERCISES if name in found]
 
 
-def test_points_are_30_to_40_in_all():
+def test_released_notebooks_are_worth_what_their_sources_are():
     cells = [
         cell.metadata.get("nbgrader", {})
         for path in (ROOT / "notebooks/transforms").glob("*.ipynb")
         for cell in nbformat.read(path, as_version=4).cells
     ]
-    assert 30 <= sum(meta.get("points", 0) for meta in cells if meta.get("grade")) <= 40
+    assert sum(meta.get("points", 0) for meta in cells if meta.get("grade")) == points() + points_by_hand() > 0
 
 
 def test_hand_graded_questions_are_in_notebooks_2_4_and_5():

@@ -15,7 +15,7 @@ import nbformat
 import pytest
 import yaml
 from markdown_it import MarkdownIt
-from support import ROOT
+from support import NAMES, ROOT, points
 from transform_lab.judging.verdict import Verdict
 
 from autograder.grading.judge import Row
@@ -179,15 +179,18 @@ def test_a_students_repository_is_graded_and_told(kind, course, solved, sandboxe
         code, summary, _ = run_job("grade", workspace, expressions, github.address)
     assert code == 0
     rows = table(summary)
-    assert len(rows) == 16 and {len(row) for row in rows} == {4}
+    assert [row[1] for row in rows] == NAMES and {len(row) for row in rows} == {4}
     ((path, (authorization, told)),) = github.posted.items()
     assert path == "/repos/school/transforms-ann/check-runs" and authorization == "Bearer t"
     assert told["head_sha"] == "a1" and told["output"]["summary"] == summary
     if kind == "solved":
-        assert told["conclusion"] == "success" and told["output"]["title"] == "34 of 34 points"
+        assert told["conclusion"] == "success" and told["output"]["title"] == f"{points():g} of {points():g} points"
         assert {row[3] for row in rows} == {""}
     else:
-        assert told["conclusion"] == "failure" and told["output"]["title"] == "7 of 34 points"
+        assert (
+            told["conclusion"] == "failure"
+            and told["output"]["title"] == f"{points('1_rotation'):g} of {points():g} points"
+        )
         words = {row[1]: row[3] for row in rows}
         assert words["chain"] == "The file could not be read." and words["waypoint"] == "Not handed in."
         assert "&lt;script&gt;alert(1)&lt;/script&gt; `code` | [a](javascript:b) **bold**" in words["invert_transform"]

@@ -7,7 +7,7 @@ import sys
 
 import nbformat
 import pytest
-from support import marks, nbgrader, run, scores, statuses
+from support import marks, nbgrader, points, run, scores, statuses
 
 from autograder.bridge.gradebook import Writer
 from autograder.grading import workers
@@ -64,7 +64,7 @@ def test_everybody_is_graded_and_both_ways_agree(odd, tmp_path, sandboxed):
     everybody = odd.students()
     assert len(everybody) == 12
     for student in everybody:
-        assert sum(scores(odd, student).values()) == (0 if student == "linked" else 7), student
+        assert sum(scores(odd, student).values()) == (0 if student == "linked" else points(ONE)), student
     assert "large: b.bin: left out; besides notebooks, 200 files of 4 MB in all are taken." in said
     assert "left out; it is a link" in said
     assert "[red]markup " in said  # the table shows names as they are
@@ -153,7 +153,7 @@ def test_a_worker_that_dies_costs_only_its_own_submission(course, hand_in, solve
     assert "is there enough memory?" in found["bad"][1]
     for student in ("ann", "cid", "dan"):
         assert found[student][1] is None
-        assert sum(row.score for row in found[student][0].rows) == 7
+        assert sum(row.score for row in found[student][0].rows) == points(ONE)
 
 
 def test_a_slow_notebook_costs_itself_alone(course, hand_in, solved, sandboxed):

@@ -8,7 +8,6 @@ from mutants import mutants
 from scipy.spatial.transform import Rotation
 from solutions.wrong import WRONG
 from support import SEEDS, judged
-from test_exercises import NAMES, poses
 from transform_lab import Point, Pose, Quaternion
 from transform_lab.judging.answers import PARTS, agree, matrix_of, parts_of
 from transform_lab.judging.diagnosis import GENERAL
@@ -16,8 +15,8 @@ from transform_lab.judging.verdict import Reply, examine
 
 from autograder.exercises import EXERCISES, PUBLIC_SEED
 
-every_exercise = pytest.mark.parametrize("name", NAMES)
-MATRICES_AND_POSES = [name for name in NAMES if len(PARTS[EXERCISES[name].returns]) > 1]
+every_exercise = pytest.mark.parametrize("name", EXERCISES)
+MATRICES_AND_POSES = [name for name in EXERCISES if len(PARTS[EXERCISES[name].returns]) > 1]
 
 
 def split(name, answer):
@@ -253,7 +252,7 @@ def test_two_mistakes_in_two_parts_are_both_named(name):
     assert right >= 0.6 * len(pairs)
 
 
-@pytest.mark.parametrize("name", poses())
+@pytest.mark.parametrize("name", [name for name in EXERCISES if EXERCISES[name].returns == "pose"])
 def test_a_quaternion_of_another_length_beside_another_mistake(name):
     def wrong(*args, **kwargs):
         parts = split(name, EXERCISES[name].reference(*args, **kwargs))
@@ -269,7 +268,7 @@ def test_a_quaternion_of_another_length_beside_another_mistake(name):
         assert judged(name, doubly_wrong).misconceptions == ("not-normalised", "position-missing")
 
 
-@pytest.mark.parametrize("name", [name for name in NAMES if EXERCISES[name].returns != "truth"])
+@pytest.mark.parametrize("name", [name for name in EXERCISES if EXERCISES[name].returns != "truth"])
 def test_rounded_answers_are_named(name):
     def rounding(decimals):
         def rounded(*args, **kwargs):

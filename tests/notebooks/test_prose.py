@@ -38,6 +38,7 @@ import nbformat
 import numpy as np
 import pytest
 import transform_lab
+import support
 from support import ROOT
 from formulas import BETWEEN, MEANT_EXACTLY, NUMBER, WORD, Unreadable, World, numbers, statements, wrong
 from scipy.spatial.transform import Rotation
@@ -383,12 +384,15 @@ def test_every_claim_speaks_of_a_text_that_there_is():
     assert {name for name, _ in claims()} <= {*NOTEBOOKS, CONVENTIONS}
 
 
+SUM = support.points("1_rotation")
+
+
 @pytest.mark.parametrize(
     "name, cell_id, right, broken, says",
     [
         ("1_rotation", "turns-predict", "(-1, 0, 0)", "(1, 0, 0)", "says [1.0, 0.0, 0.0]"),
         ("1_rotation", "columns-say", "0 & -1 & 0", "0 & 1 & 0", "gives [0.0, -1.0, 0.0, 1.0"),
-        ("1_rotation", "title", "7 points", "8 points", "the sum of nbgrader's cells gives [7]"),
+        ("1_rotation", "title", f"{SUM:g} points", f"{SUM + 1:g} points", f"the sum of nbgrader's cells gives [{SUM:g}]"),
         ("1_rotation", "same-exercise", "(1 point)", "(2 points)", "nbgrader's cell gives [1]"),
         ("1_rotation", "quaternions-formula", "= 0.3827$", "= 0.3826$", "is not true"),
         ("2_homogeneous_transforms", "example-one", "raised by half a metre", "raised by a metre", "gives [45.0, 0.5]"),
