@@ -45,10 +45,9 @@ def test_each_exercise_is_looked_at_anew(shell):
     assert lines[1].startswith("rotation_from_axes  0 of 2  not right yet")
     assert lines[2] == "is_rotation  0 of 2  its cell has not been run"
     assert lines[3] == "same_rotation  0 of 1  not done yet"
-    assert (
-        lines[len(ASKED["1_rotation"].points)]
-        == f"Right so far: 1 of {len(ASKED['1_rotation'].points)} exercises, 2 of {points('1_rotation'):g} points. Grading uses other numbers."
-    )
+    asked = len(ASKED["1_rotation"].points)
+    so_far = f"1 of {asked} exercises, 2 of {points('1_rotation'):g} points"
+    assert lines[asked] == f"Right so far: {so_far}. Grading uses other numbers."
     assert "hand in the file 1_rotation.ipynb under this name" in lines[-1]
     assert [re.sub("<.*?>", "", row)[0] for row in re.findall("<tr><td>.*?</tr>", html)] == ["✓", "✗", "…", "…"]
 

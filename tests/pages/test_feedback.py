@@ -28,6 +28,7 @@ from autograder.pages.exporter import LEFT_OUT
 
 TWO, FIVE = "2_homogeneous_transforms", "5_pre_grasp"
 MOST = 1_500_000  # bytes of a student's feedback
+MOST_POINTS = points() + points_by_hand()
 ADDED_AS_IT_IS = "def transform_point(a_T_b, p_in_b):\n    return p_in_b + a_T_b[:3, 3]\n"
 TWO_MISTAKES = """def pre_grasp(object_pose, distance=0.1):
     object_pose.position.x -= distance
@@ -263,10 +264,7 @@ def test_nbgraders_own_grading_finds_the_same_examples(course_of_ben):
 
 def test_the_summary_says_what_was_found_what_helps_and_where_to_read_again(classroom):
     text = read(classroom, "ben")
-    assert (
-        f"12 of {points() + points_by_hand():g} points so far" in text
-        and "2 of your written answers are not graded yet" in text
-    )
+    assert f"12 of {MOST_POINTS:g} points so far" in text and "2 of your written answers are not graded yet" in text
     assert "Begin with transform_point" in text
     assert "transform_point : 0 of 2 The translation was added" in text.replace("transform_point:", "transform_point :")
     assert "What helps: The coordinates count along B's axes" in text
@@ -293,7 +291,7 @@ def test_a_grade_given_by_hand_asks_for_new_pages(course_of_ben):
     assert "question-which-frame : 1.5 of 2" in read(course_of_ben, "ben", FIVE).replace("frame:", "frame :")
     text = read(course_of_ben, "ben")
     assert (
-        f"13.5 of {points() + points_by_hand():g} points so far" in text
+        f"13.5 of {MOST_POINTS:g} points so far" in text
         and "which way is up?: 1.5 of 2 Nearly: <b>which</b> z?" in text
     )
 
