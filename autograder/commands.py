@@ -94,9 +94,12 @@ def _parser():
         metavar="PATH",
         help="the folder to put both into (default: this one), or a file named *.zip for that of the notebooks alone",
     )
-    sub = add("export", export, "write the gradebook's points as CSV: as a table, or as Canvas or Moodle imports them")
+    sub = add("export", export, "write the gradebook's points as CSV: as a table, or as an LMS imports them")
     sub.add_argument(
-        "--format", choices=("plain", "canvas", "moodle"), default="plain", help="columns (default: plain)"
+        "--format",
+        default="plain",
+        metavar="NAME",
+        help="columns: plain, or those that an LMS imports, such as canvas (default: plain)",
     )
     sub.add_argument(
         "--column",

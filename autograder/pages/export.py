@@ -7,7 +7,9 @@ submitted/. What is not known stays empty, and `remarks` says so.
 import csv
 import io
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from nbgrader.api import Student
 
@@ -67,22 +69,38 @@ def moodle(course, assignment, found, column):
         yield who.first_name, who.last_name, who.id, who.lms_user_id, who.email, round(total.score, 2), feedback
 
 
-FORMATS = {"plain": plain, "canvas": canvas, "moodle": moodle}
-SHOWN = {  # what a format has of a student, besides the id
-    "plain": (),
-    "canvas": ("first_name", "last_name", "lms_user_id"),
-    "moodle": ("first_name", "last_name", "email", "lms_user_id"),
+class Format(NamedTuple):
+    """A table of points. rows: from (course, assignment, [StudentTotal], column) to the rows of cells, the head among them;
+    shown: what it has of a student besides the id, as nbgrader's student table calls it
+    """
+
+    rows: Callable
+    shown: tuple = ()
+
+
+FORMATS = {
+    "plain": Format(plain),
+    "canvas": Format(canvas, ("first_name", "last_name", "lms_user_id")),
+    "moodle": Format(moodle, ("first_name", "last_name", "email", "lms_user_id")),
 }
+
+
+def known_format(name):
+    """The Format of that name; raises CourseError when there is none."""
+    if name not in FORMATS:
+        raise CourseError(f"There is no format {name!r}; choose from {', '.join(FORMATS)}.")
+    return FORMATS[name]
 
 
 def text(course, gradebook, found, name, column=ASSIGNMENT):
     """CSV text of a format of FORMATS; column: what the points' column is called in it, as the LMS calls the assignment.
 
-    Raises CourseError when a spreadsheet would run a cell as a formula: changed, it would no longer be who it names.
+    Raises CourseError when there is no such format, and when a spreadsheet would run a cell as a formula: changed, it would
+    no longer be who it names.
     """
     table = io.StringIO()
     writer = csv.writer(table, lineterminator="\n")
-    cells = [row for row in FORMATS[name](course, gradebook.find_assignment(ASSIGNMENT), found, column)]
+    cells = [row for row in known_format(name).rows(course, gradebook.find_assignment(ASSIGNMENT), found, column)]
     dangerous = {cell: None for row in cells for cell in row if isinstance(cell, str) and FORMULA.match(cell)}
     if dangerous:
         raise CourseError(
@@ -104,9 +122,9 @@ def remarks(found, name):
             f"These points are not final: written answers of {whose} wait to be graded by hand "
             "(`jupyter lab`, then Nbgrader > Formgrader)."
         )
-    nameless = sum(not all(getattr(total.student, field) for field in SHOWN[name]) for total in found)
+    nameless = sum(not all(getattr(total.student, field) for field in known_format(name).shown) for total in found)
     if nameless:
-        fields = ", ".join(SHOWN[name])
+        fields = ", ".join(known_format(name).shown)
         yield (
             f"The gradebook does not know {fields} of {nameless} of {len(found)} students; what it lacks is empty here. "
             f"To add it: `nbgrader db student import FILE.csv` (columns id,{fields.replace(' ', '')}), then export again."
