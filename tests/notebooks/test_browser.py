@@ -4,22 +4,18 @@ The server runs under /user/x/, as behind a JupyterHub. Screenshots go to screen
 """
 
 import io
-import json
-import os
 import re
-import secrets
 import shutil
-import socket
 import subprocess
 import sys
 import time
-import urllib.request
 
 import nbformat
 import numpy as np
 import pytest
-from support import ROOT
+from jupyter_lab import Opened, Server, drawn
 from PIL import Image
+from support import ROOT
 from transform_lab import tft
 from transform_lab.animations import between
 

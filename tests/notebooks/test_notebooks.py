@@ -5,8 +5,8 @@ import time
 
 import nbformat
 import pytest
-from support import NAMES, ROOT
 from nbclient import NotebookClient
+from support import NAMES, ROOT
 from transform_lab.judging import panel
 
 from autograder.course import Course

@@ -37,11 +37,11 @@ from types import SimpleNamespace
 import nbformat
 import numpy as np
 import pytest
-import transform_lab
 import support
-from support import ROOT
+import transform_lab
 from formulas import BETWEEN, MEANT_EXACTLY, NUMBER, WORD, Unreadable, World, numbers, statements, wrong
 from scipy.spatial.transform import Rotation
+from support import ROOT
 from transform_lab import tft
 from transform_lab.judging.answers import TOLERANCE
 from transform_lab.viewing import shapes
