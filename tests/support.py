@@ -1,9 +1,14 @@
 """What tests of several rooms use: commands run as an instructor runs them, and what came of them."""
 
+import atexit
 import csv
 import os
+import shutil
 import subprocess
 import sys
+import tempfile
+import time
+from functools import cache
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -21,12 +26,14 @@ from autograder.pages.markdown import markdown2html
 from autograder.released import Released
 
 ROOT = Path(__file__).resolve().parent.parent
+PATH = f"{Path(sys.prefix, 'bin')}{os.pathsep}{os.environ['PATH']}"  # nbgrader runs alembic by name
 MADE_AT_RUN_TIME = (".git", ".venv", "submitted", "autograded", "feedback", "reports", "gradebook.db", "__pycache__")
 SOFTWARE_WEBGL = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 CHROMIUM_FLAGS = (
     "--no-sandbox --disable-gpu --disable-background-networking --disable-component-update --disable-sync --no-first-run"
 ).split()
 SEEDS = (PUBLIC_SEED, 1, 7, 20_170_424, 987_654_321)
+PATIENCE = 300  # seconds after which a test gives up waiting; long, for none is about how fast a machine is
 _keys = {}
 
 # What the course asks for, read from its notebooks: {notebook: Released}
@@ -54,6 +61,23 @@ def lacking(what):
     pytest.skip(what)
 
 
+@cache
+def path_without(*tools):
+    """The PATH without these programs: a folder that holds one is replaced by links to all else that is in it."""
+    folders = []
+    for folder in map(Path, PATH.split(os.pathsep)):
+        if any((folder / tool).exists() for tool in tools):
+            links = Path(tempfile.mkdtemp(prefix="path-"))
+            links.chmod(0o755)
+            atexit.register(shutil.rmtree, links)
+            for program in folder.iterdir():
+                if program.name not in tools:
+                    (links / program.name).symlink_to(program)
+            folder = links
+        folders.append(str(folder))
+    return os.pathsep.join(folders)
+
+
 def run(course, *arguments, path=None):
     """Run `python3 -m autograder …` in a course; (exit code, all that was printed)."""
     environment = {**os.environ, "COLUMNS": "200"}
@@ -67,6 +91,15 @@ def run(course, *arguments, path=None):
     said = result.stdout + result.stderr
     assert "Traceback (most recent call last)" not in said, said
     return result.returncode, said
+
+
+def wait_for(condition):
+    """Return when `condition()` is true."""
+    for _ in range(20 * PATIENCE):
+        if condition():
+            return
+        time.sleep(0.05)
+    raise TimeoutError("what a test waits for did not happen")
 
 
 def verdicts(course):

@@ -5,12 +5,11 @@ import shutil
 import socket
 import subprocess
 import sys
-import time
 import urllib.error
 import urllib.request
 
 import pytest
-from support import NAMES, marks, nbgrader, points, points_by_hand, without_plugin
+from support import NAMES, marks, nbgrader, points, points_by_hand, wait_for, without_plugin
 
 from autograder.course import ASSIGNMENT, Course
 from autograder.demo import enroll
@@ -113,16 +112,18 @@ def formgrader(course, hand_in, solved, sandboxed):
         server = subprocess.Popen(command, cwd=course.root, stdout=log, stderr=log, stdin=subprocess.DEVNULL)
     address = f"http://127.0.0.1:{port}"
     try:
-        for _ in range(150):
-            try:
-                page(address, "/api/status")
-                break
-            except (urllib.error.URLError, ConnectionError):
-                time.sleep(0.2)
+        wait_for(lambda: answers(address))
         yield address
     finally:
         server.terminate()
         server.wait(30)
+
+
+def answers(address):
+    try:
+        return page(address, "/api/status")
+    except (urllib.error.URLError, ConnectionError):
+        return False
 
 
 def page(address, path, method="GET"):
