@@ -34,7 +34,6 @@ CHROMIUM_FLAGS = (
 ).split()
 SEEDS = (PUBLIC_SEED, 1, 7, 20_170_424, 987_654_321)
 PATIENCE = 300  # seconds after which a test gives up waiting; long, for none is about how fast a machine is
-_keys = {}
 
 # What the course asks for, read from its notebooks: {notebook: Released}
 ASKED = {
@@ -115,14 +114,6 @@ def statuses(course, student):
     return {row["exercise"]: row["status"] for row in verdicts(course) if row["student"] == student}
 
 
-def nbgrader(course, *arguments):
-    """Run an nbgrader command in the course's root, as an instructor does."""
-    command = [sys.executable, "-m", "nbgrader", *arguments]
-    return subprocess.run(
-        command, cwd=course.root, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=1200
-    )
-
-
 def marks(course):
     """{(student, notebook, cell): all that the gradebook holds of it}, comments included."""
     found = {}
@@ -160,9 +151,13 @@ class Parsed(HTMLParser):
         self.tags.append((tag, dict(attributes)))
 
 
+@cache
+def key_of(name, seed=PUBLIC_SEED):
+    """The key of an exercise, worked out once."""
+    return key(EXERCISES[name], seed)
+
+
 def judged(name, function, seed=PUBLIC_SEED):
     """The Verdict on `function` as a student's solution of the exercise `name`."""
-    if (name, seed) not in _keys:
-        _keys[name, seed] = key(EXERCISES[name], seed)
     with np.errstate(all="ignore"):  # wrong solutions divide by zero
-        return examine(name, _keys[name, seed], lambda args, kwargs: call(function, args, kwargs))
+        return examine(name, key_of(name, seed), lambda args, kwargs: call(function, args, kwargs))

@@ -1,15 +1,13 @@
 """The real sandbox: what a notebook's process can do, and what it cannot reach."""
 
 import os
-from functools import cache
 from pathlib import Path
 
 import pytest
 from solutions.right import NAMES, RIGHT
-from support import ROOT
+from support import ROOT, key_of
 from transform_lab.judging.verdict import examine
 
-from autograder.exercises import EXERCISES, key
 from autograder.sandbox import Ended, Limits, Sandbox
 
 PACKAGE = ROOT / "source/transforms/transform_lab"
@@ -388,10 +386,5 @@ def test_right_solutions_are_right_in_the_sandbox_too(sandbox):
         assert not [output for output in notebook.run_cell(source).outputs if output["output_type"] == "error"]
         for index, (name, label) in enumerate(zip((name for name, _ in RIGHT), NAMES)):
             notebook.run_cell(f"{name} = RIGHT[{index}][1]")
-            verdict = examine(name, _hidden(name), lambda args, kwargs, name=name: notebook.call(name, args, kwargs))
+            verdict = examine(name, key_of(name, 5), lambda args, kwargs, name=name: notebook.call(name, args, kwargs))
             assert verdict.right, (name, label, verdict.says)
-
-
-@cache
-def _hidden(name):
-    return key(EXERCISES[name], 5)
