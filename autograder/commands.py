@@ -108,7 +108,8 @@ def _parser():
         help=f"the grading_run's name in the LMS (default: {ASSIGNMENT})",
     )
     sub.add_argument("--output", type=Path, default=Path("-"), help="a file (default: print)")
-    add("test", test, "run all tests; other options are passed on to pytest")
+    sub = add("test", test, "run the quick tests; other options are passed on to pytest, and choose among all tests")
+    sub.add_argument("--all", action="store_true", help="all tests: in sandboxes, in a browser, of whole classes, too")
     return parser
 
 
@@ -425,5 +426,6 @@ def export(options):
 
 
 def test(options):
-    everything = ["--numprocesses", str(os.cpu_count()), "--dist", "loadfile"]
-    return subprocess.call([sys.executable, "-m", "pytest", *(options.extra or everything)])
+    tier = ["--all"] if options.all else []
+    spread = ["--numprocesses", str(os.cpu_count()), "--dist", "loadfile", "--no-loadscope-reorder"]
+    return subprocess.call([sys.executable, "-m", "pytest", *tier, *(options.extra or spread)])

@@ -7,10 +7,9 @@ import shutil
 import socket
 import subprocess
 import sys
-import time
 import urllib.request
 
-from support import ROOT
+from support import PATIENCE, ROOT, wait_for
 
 
 class Server:
@@ -35,20 +34,20 @@ class Server:
              "--LabApp.expose_app_in_browser=True", "--JupyterNotebookApp.expose_app_in_browser=True"],
             stdout=self.log, stderr=self.log, stdin=subprocess.DEVNULL, env=os.environ | home,
         )  # fmt: skip
-        for _ in range(300):
-            if self.process.poll() is not None:
-                raise RuntimeError((folder / "jupyter.log").read_text())
-            try:
-                self.api("api")
-                return
-            except OSError:
-                time.sleep(0.2)
-        raise RuntimeError("Jupyter did not start: " + (folder / "jupyter.log").read_text())
+        wait_for(self._answers)
+
+    def _answers(self):
+        if self.process.poll() is not None:
+            raise RuntimeError((self.folder / "jupyter.log").read_text())
+        try:
+            return self.api("api")
+        except OSError:
+            return False
 
     def api(self, path, method="GET"):
         request = urllib.request.Request(f"{self.url}/{path}", method=method)
         request.add_header("Authorization", f"token {self.token}")
-        with urllib.request.urlopen(request, timeout=10) as answer:
+        with urllib.request.urlopen(request, timeout=PATIENCE) as answer:
             text = answer.read()
         return json.loads(text) if text else None
 

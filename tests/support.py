@@ -1,9 +1,14 @@
 """What tests of several rooms use: commands run as an instructor runs them, and what came of them."""
 
+import atexit
 import csv
 import os
+import shutil
 import subprocess
 import sys
+import tempfile
+import time
+from functools import cache
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -21,13 +26,14 @@ from autograder.pages.markdown import markdown2html
 from autograder.released import Released
 
 ROOT = Path(__file__).resolve().parent.parent
+PATH = f"{Path(sys.prefix, 'bin')}{os.pathsep}{os.environ['PATH']}"  # nbgrader runs alembic by name
 MADE_AT_RUN_TIME = (".git", ".venv", "submitted", "autograded", "feedback", "reports", "gradebook.db", "__pycache__")
 SOFTWARE_WEBGL = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 CHROMIUM_FLAGS = (
     "--no-sandbox --disable-gpu --disable-background-networking --disable-component-update --disable-sync --no-first-run"
 ).split()
 SEEDS = (PUBLIC_SEED, 1, 7, 20_170_424, 987_654_321)
-_keys = {}
+PATIENCE = 300  # seconds after which a test gives up waiting; long, for none is about how fast a machine is
 
 # What the course asks for, read from its notebooks: {notebook: Released}
 ASKED = {
@@ -54,6 +60,23 @@ def lacking(what):
     pytest.skip(what)
 
 
+@cache
+def path_without(*tools):
+    """The PATH without these programs: a folder that holds one is replaced by links to all else that is in it."""
+    folders = []
+    for folder in map(Path, PATH.split(os.pathsep)):
+        if any((folder / tool).exists() for tool in tools):
+            links = Path(tempfile.mkdtemp(prefix="path-"))
+            links.chmod(0o755)
+            atexit.register(shutil.rmtree, links)
+            for program in folder.iterdir():
+                if program.name not in tools:
+                    (links / program.name).symlink_to(program)
+            folder = links
+        folders.append(str(folder))
+    return os.pathsep.join(folders)
+
+
 def run(course, *arguments, path=None):
     """Run `python3 -m autograder …` in a course; (exit code, all that was printed)."""
     environment = {**os.environ, "COLUMNS": "200"}
@@ -69,6 +92,15 @@ def run(course, *arguments, path=None):
     return result.returncode, said
 
 
+def wait_for(condition):
+    """Return when `condition()` is true."""
+    for _ in range(20 * PATIENCE):
+        if condition():
+            return
+        time.sleep(0.05)
+    raise TimeoutError("what a test waits for did not happen")
+
+
 def verdicts(course):
     with open(course.reports / "verdicts.csv", newline="") as file:
         return list(csv.DictReader(file))
@@ -80,14 +112,6 @@ def scores(course, student):
 
 def statuses(course, student):
     return {row["exercise"]: row["status"] for row in verdicts(course) if row["student"] == student}
-
-
-def nbgrader(course, *arguments):
-    """Run an nbgrader command in the course's root, as an instructor does."""
-    command = [sys.executable, "-m", "nbgrader", *arguments]
-    return subprocess.run(
-        command, cwd=course.root, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=1200
-    )
 
 
 def marks(course):
@@ -127,9 +151,13 @@ class Parsed(HTMLParser):
         self.tags.append((tag, dict(attributes)))
 
 
+@cache
+def key_of(name, seed=PUBLIC_SEED):
+    """The key of an exercise, worked out once."""
+    return key(EXERCISES[name], seed)
+
+
 def judged(name, function, seed=PUBLIC_SEED):
     """The Verdict on `function` as a student's solution of the exercise `name`."""
-    if (name, seed) not in _keys:
-        _keys[name, seed] = key(EXERCISES[name], seed)
     with np.errstate(all="ignore"):  # wrong solutions divide by zero
-        return examine(name, _keys[name, seed], lambda args, kwargs: call(function, args, kwargs))
+        return examine(name, key_of(name, seed), lambda args, kwargs: call(function, args, kwargs))

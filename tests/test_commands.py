@@ -9,22 +9,16 @@ from pathlib import Path
 
 import nbformat
 import pytest
-from support import ASKED, points, points_by_hand, run, scores, statuses, verdicts
+from support import ASKED, path_without, points, points_by_hand, run, scores, statuses, verdicts
 
 from autograder.bridge.gradebook import Writer
 from autograder.exercises import EXERCISES
 
 
 @pytest.fixture
-def without_bubblewrap(tmp_path):
+def without_bubblewrap():
     """A PATH on which there is no bwrap."""
-    folder = tmp_path / "bin"
-    folder.mkdir()
-    for name in ("alembic", "jupyter", "true"):
-        found = shutil.which(name)
-        if found:
-            (folder / name).symlink_to(found)
-    return str(folder)
+    return path_without("bwrap")
 
 
 # --- grade ----------------------------------------------------------------------------------------------------------

@@ -62,6 +62,7 @@ def _parse(content):
         raw = json.loads(content.decode("utf-8-sig"))
     except (UnicodeDecodeError, RecursionError, ValueError) as error:
         raise Unreadable(f"it is not JSON ({_short(error)})") from error
+    _bounded(raw.get("cells") if isinstance(raw, dict) else None)  # before time is spent on each of them
     try:
         text = printable(json.dumps(_known_fields(raw), ensure_ascii=False))
         notebook = nbformat.convert(nbformat.reader.reads(text), 4)
@@ -75,9 +76,13 @@ def _parse(content):
         nbformat.validate(notebook)
     except Exception as error:  # nbformat raises what it happens to meet in a file of another shape
         raise Unreadable(f"it is not a Jupyter notebook ({_short(error)})") from error
-    if len(notebook.cells) > MOST_CELLS:
-        raise Unreadable(f"it has {len(notebook.cells)} cells; at most {MOST_CELLS} are accepted")
+    _bounded(notebook.cells)
     return notebook
+
+
+def _bounded(cells):
+    if isinstance(cells, list) and len(cells) > MOST_CELLS:
+        raise Unreadable(f"it has {len(cells)} cells; at most {MOST_CELLS} are accepted")
 
 
 def _known_fields(raw):

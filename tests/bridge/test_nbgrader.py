@@ -5,18 +5,17 @@ import shutil
 import socket
 import subprocess
 import sys
-import time
 import urllib.error
 import urllib.request
 
 import pytest
-from support import NAMES, marks, nbgrader, points, points_by_hand, without_plugin
+from support import NAMES, marks, points, points_by_hand, wait_for, without_plugin
 
 from autograder.course import ASSIGNMENT, Course
 from autograder.demo import enroll
 
 
-def test_stock_nbgrader_gives_the_solutions_full_points(course, hand_in, solved):
+def test_stock_nbgrader_gives_the_solutions_full_points(course, hand_in, solved, nbgrader):
     without_plugin(course)
     hand_in(course, "alice", solved)
     result = nbgrader(course, "autograde", ASSIGNMENT)
@@ -30,7 +29,7 @@ def test_stock_nbgrader_gives_the_solutions_full_points(course, hand_in, solved)
     assert all(auto == most for auto, _, most, _ in automatic.values())
 
 
-def test_stock_nbgrader_gives_untouched_notebooks_nothing_and_part_answers_a_part(course, hand_in):
+def test_stock_nbgrader_gives_untouched_notebooks_nothing_and_part_answers_a_part(course, hand_in, nbgrader):
     without_plugin(course)
     notebooks = {name: course.release / f"{name}.ipynb" for name in course.notebooks}
     text = notebooks["2_homogeneous_transforms"].read_text()
@@ -71,7 +70,7 @@ def test_both_ways_of_grading_give_the_same_gradebook(released, tmp_path, sandbo
 
 
 @pytest.mark.parametrize("name", ["1_rotation", "2_homogeneous_transforms"])
-def test_validate_passes_on_solved_and_fails_on_untouched_notebooks(course, solved, name):
+def test_validate_passes_on_solved_and_fails_on_untouched_notebooks(course, solved, name, nbgrader):
     passed = nbgrader(course, "validate", str(solved[name]))
     assert "Success! Your notebook passes all the tests." in passed.stdout, passed.stdout + passed.stderr
     failed = nbgrader(course, "validate", str(course.release / f"{name}.ipynb"))
@@ -80,7 +79,7 @@ def test_validate_passes_on_solved_and_fails_on_untouched_notebooks(course, solv
         assert f'check("{exercise}", {exercise})' in failed.stdout
 
 
-def test_a_wrong_answer_fails_validation_with_one_line(course):
+def test_a_wrong_answer_fails_validation_with_one_line(course, nbgrader):
     path = course.release / "1_rotation.ipynb"
     raw = json.loads(path.read_text())
     for cell in raw["cells"]:
@@ -113,16 +112,18 @@ def formgrader(course, hand_in, solved, sandboxed):
         server = subprocess.Popen(command, cwd=course.root, stdout=log, stderr=log, stdin=subprocess.DEVNULL)
     address = f"http://127.0.0.1:{port}"
     try:
-        for _ in range(150):
-            try:
-                page(address, "/api/status")
-                break
-            except (urllib.error.URLError, ConnectionError):
-                time.sleep(0.2)
+        wait_for(lambda: answers(address))
         yield address
     finally:
         server.terminate()
         server.wait(30)
+
+
+def answers(address):
+    try:
+        return page(address, "/api/status")
+    except (urllib.error.URLError, ConnectionError):
+        return False
 
 
 def page(address, path, method="GET"):

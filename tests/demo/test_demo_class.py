@@ -8,13 +8,13 @@ from collections import Counter
 import nbformat
 import numpy as np
 import pytest
-from support import ROOT
+from support import key_of
 from transform_lab.judging.calling import call
 from transform_lab.judging.verdict import examine
 
 from autograder.course import Course
 from autograder.demo import STUDENTS, Student, enroll, is_demo
-from autograder.exercises import EXERCISES, key
+from autograder.exercises import EXERCISES
 
 PATHS = sorted(STUDENTS.glob("*.py"))
 SEED = 7
@@ -24,15 +24,9 @@ each_student = pytest.mark.parametrize("path", PATHS, ids=lambda path: path.stem
 
 
 @pytest.fixture(scope="session")
-def course(tmp_path_factory):
+def course(released, tmp_path_factory):
     """A course of its own, released, with the class enrolled."""
-    from autograder.handout.release import release
-
-    root = tmp_path_factory.mktemp("course")
-    shutil.copytree(ROOT / "source", root / "source", ignore=shutil.ignore_patterns("__pycache__"))
-    shutil.copy(ROOT / "nbgrader_config.py", root)
-    course = Course(root)
-    release(course)
+    course = Course(shutil.copytree(released.root, tmp_path_factory.mktemp("demo") / "course"))
     (course.package / "__pycache__").mkdir()
     (course.package / "__pycache__" / "check.pyc").write_bytes(b"made at run time")
     enroll(course)
@@ -47,12 +41,12 @@ def cells(path):
 
 def verdicts(path):
     """{exercise: Verdict} on a student's functions; the file is executed here, which the demo itself never does."""
-    namespace, keys = {}, {name: key(EXERCISES[name], SEED) for name in EXERCISES}
+    namespace = {}
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
         exec(compile(path.read_text(encoding="utf-8"), path.name, "exec"), namespace)
         return {
-            name: examine(name, keys[name], lambda args, kwargs, name=name: call(namespace[name], args, kwargs))
+            name: examine(name, key_of(name, SEED), lambda args, kwargs, name=name: call(namespace[name], args, kwargs))
             for name in EXERCISES
             if name in namespace and (path.stem, name) != ENDLESS
         }

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from PIL import Image
 from scipy.spatial.transform import Rotation
-from support import NAMES, ROOT, SEEDS, judged
+from support import NAMES, ROOT, SEEDS, judged, key_of
 from transform_lab import Point, Pose, Quaternion
 from transform_lab.judging.answers import TOLERANCE, agree, parts_of
 
@@ -281,7 +281,7 @@ def test_every_family_of_truths_has_no_single_answer_but_negatives():
     """So that an answer that is True (or False) nearly always earns next to nothing."""
     for name in ("is_rotation", "same_rotation"):
         answers = {}
-        for case in key(EXERCISES[name], PUBLIC_SEED)["cases"]:
+        for case in key_of(name)["cases"]:
             answers.setdefault(case["family"], set()).add(case["expected"])
         one_sided = [family for family, seen in answers.items() if len(seen) == 1]
         assert one_sided == ([] if name == "is_rotation" else ["a quaternion and its negative"])
@@ -332,7 +332,7 @@ def test_chains_and_distances_are_of_all_kinds():
 
 
 def test_public_key_is_small():
-    sizes = {name: len(json.dumps(key(EXERCISES[name], PUBLIC_SEED))) for name in EXERCISES}
+    sizes = {name: len(json.dumps(key_of(name))) for name in EXERCISES}
     print(f"public key: {sum(sizes.values()):,} bytes", sizes)
     assert sum(sizes.values()) < 2_500_000  # a tenth of that when zipped
 
@@ -340,7 +340,7 @@ def test_public_key_is_small():
 @every_exercise
 def test_credit_is_counted_by_families_and_their_weights(name):
     """Right in all families but one: that one's share of the weights is lost, or a part of it."""
-    public = key(EXERCISES[name], PUBLIC_SEED)
+    public = key_of(name)
     assert set(EXERCISES[name].weights) <= set(public["weights"])
     total = sum(public["weights"].values())
     for family, weight in public["weights"].items():

@@ -7,10 +7,9 @@ import signal
 import subprocess
 import sys
 import threading
-import time
 
 import pytest
-from support import marks, run
+from support import marks, run, wait_for
 
 from autograder.course import Course
 
@@ -46,8 +45,7 @@ def test_a_class_is_graded_on_a_cluster_and_a_worker_that_is_killed_costs_nothin
     killed = threading.Event()
 
     def kill():
-        while not list(course.root.glob("autograded/*/transforms/5_pre_grasp.ipynb")):
-            time.sleep(0.02)
+        wait_for(lambda: list(course.root.glob("autograded/*/transforms/5_pre_grasp.ipynb")))
         os.kill(victim, signal.SIGKILL)
         killed.set()
 
@@ -74,8 +72,7 @@ def test_a_scheduler_without_workers_is_said(course, hand_in, solved):
         [*command, "--scheduler-file", course.root / "scheduler.json"], cwd=course.root, stderr=subprocess.DEVNULL
     )
     try:
-        while not (course.root / "scheduler.json").exists():
-            time.sleep(0.1)
+        wait_for((course.root / "scheduler.json").exists)
         address = json.loads((course.root / "scheduler.json").read_text())["address"]
         code, said = run(course, "grade", "--scheduler", address)
         assert code == 2 and "has no workers" in said

@@ -2,6 +2,7 @@
 
 import ast
 import json
+from dataclasses import replace
 
 import nbformat
 import pytest
@@ -126,7 +127,8 @@ def test_the_key_does_not_hold_the_hidden_cases():
         if name == "hand_transform":  # it has no arguments: one case, which the exercise's text describes
             continue
         public = [(case["args"], case["kwargs"]) for case in released[name]["cases"]]
-        hidden = [(case["args"], case["kwargs"]) for case in key(exercise, 12345)["cases"]]
+        alone = replace(exercise, misconceptions=())
+        hidden = [(case["args"], case["kwargs"]) for case in key(alone, 12345)["cases"]]
         assert sum(case not in public for case in hidden) >= 5, name
 
 

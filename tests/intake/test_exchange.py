@@ -86,7 +86,7 @@ class Hub:
 
 
 @pytest.fixture
-def hub(course, tmp_path):
+def hub(course, tmp_path, slow):
     hub = Hub(tmp_path, course)
     hub.instructor("release_assignment", ASSIGNMENT)
     return hub

@@ -7,7 +7,7 @@ import sys
 
 import nbformat
 import pytest
-from support import marks, nbgrader, points, run, scores, statuses
+from support import marks, points, run, scores, statuses
 
 from autograder.bridge.gradebook import Writer
 from autograder.grading import workers
@@ -55,7 +55,7 @@ def odd(course, hand_in, solved):
     return course
 
 
-def test_everybody_is_graded_and_both_ways_agree(odd, tmp_path, sandboxed):
+def test_everybody_is_graded_and_both_ways_agree(odd, tmp_path, sandboxed, nbgrader):
     from autograder.course import Course
 
     other = Course(shutil.copytree(odd.root, tmp_path / "other", symlinks=True))

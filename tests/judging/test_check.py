@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from IPython.core.interactiveshell import InteractiveShell
 from IPython.utils.capture import capture_output
+from support import key_of
 from transform_lab import Point, Pose, Quaternion, check, once_done, tft
 from transform_lab.check import CheckFailed
 from transform_lab.judging import codec, comparison, panel
@@ -96,14 +97,8 @@ def test_small_readable_numbers(said):
 def test_answers_of_another_kind_are_named(said, answer, misconception, words):
     text, _ = failing("transform_to_pose", lambda matrix: answer, said)
     assert words in text and "0 of 4 points" in text
-    verdict = examine("transform_to_pose", public("transform_to_pose"), lambda a, k: call(lambda matrix: answer, a, k))
+    verdict = examine("transform_to_pose", key_of("transform_to_pose"), lambda a, k: call(lambda matrix: answer, a, k))
     assert verdict.misconceptions == (misconception,)
-
-
-def public(name):
-    from autograder.exercises import PUBLIC_SEED, key
-
-    return key(EXERCISES[name], PUBLIC_SEED)
 
 
 def test_wrong_shapes_are_named(said):
@@ -227,7 +222,7 @@ def test_how_far_an_answer_is_off(said, name, wrong, words):
 
 
 def pictured(name, wrong):
-    verdict = examine(name, public(name), lambda args, kwargs: call(wrong, args, kwargs))
+    verdict = examine(name, key_of(name), lambda args, kwargs: call(wrong, args, kwargs))
     return comparison.scene(verdict)
 
 
@@ -252,7 +247,7 @@ def test_the_failing_case_is_drawn_as_frames(name, wrong, frames, points):
 
 def test_the_expected_frame_is_where_it_should_be():
     scene = pictured("object_in_gripper", lambda base_T_camera, base_T_gripper, p: p)
-    case = public("object_in_gripper")["cases"][0]
+    case = key_of("object_in_gripper")["cases"][0]
     base_T_camera, base_T_gripper, p = map(codec.decode, case["args"])
     assert np.allclose(scene.lookup("base", "camera"), base_T_camera)
     assert np.allclose(scene.lookup("base", "gripper"), base_T_gripper)
@@ -308,7 +303,7 @@ def test_a_changed_argument_is_said_beside_what_else_is_wrong(said):
         object_pose.position.x -= distance
         return object_pose
 
-    verdict = examine("pre_grasp", public("pre_grasp"), lambda a, k: call(base_frame_and_spoils, a, k))
+    verdict = examine("pre_grasp", key_of("pre_grasp"), lambda a, k: call(base_frame_and_spoils, a, k))
     assert verdict.misconceptions == ("input-mutated", "base-frame-offset")
     assert verdict.credit == 0.0
 
@@ -356,14 +351,14 @@ def test_html_escapes_what_students_write():
     def wrong(matrix):
         raise ValueError("<script>alert(1)</script>")
 
-    verdict = examine("transform_to_pose", public("transform_to_pose"), lambda a, k: call(wrong, a, k))
+    verdict = examine("transform_to_pose", key_of("transform_to_pose"), lambda a, k: call(wrong, a, k))
     assert "<script>" not in panel.html(verdict)
     assert "&lt;script&gt;" in panel.html(verdict)
 
 
 def test_feedback_on_hidden_cases_has_no_numbers():
     hidden = EXERCISES["transform_to_pose"]
-    verdict = examine("transform_to_pose", public("transform_to_pose"), lambda a, k: call(lambda m: Pose(), a, k))
+    verdict = examine("transform_to_pose", key_of("transform_to_pose"), lambda a, k: call(lambda m: Pose(), a, k))
     assert verdict.failing is not None and hidden
     for render in (panel.text, panel.html):
         shown = render(verdict, numbers=False)
@@ -394,7 +389,7 @@ def test_what_ends_an_examination(outcome, why, status, words):
         calls.append(args)
         return Reply(outcome, error=why)
 
-    verdict = examine("chain", public("chain"), answer)
+    verdict = examine("chain", key_of("chain"), answer)
     assert (verdict.status, verdict.credit, len(calls)) == (status, 0.0, 1)
     assert words in verdict.says
 

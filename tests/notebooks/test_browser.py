@@ -4,28 +4,22 @@ The server runs under /user/x/, as behind a JupyterHub. Screenshots go to screen
 """
 
 import io
-import json
-import os
 import re
-import secrets
 import shutil
-import socket
 import subprocess
 import sys
-import time
-import urllib.request
 
 import nbformat
 import numpy as np
 import pytest
-from support import ROOT
+from jupyter_lab import Opened, Server, drawn
 from PIL import Image
+from support import PATIENCE, ROOT, wait_for
 from transform_lab import tft
 from transform_lab.animations import between
 
 NOTEBOOKS = [path.stem for path in sorted((ROOT / "notebooks/transforms").glob("*.ipynb"))]
 SCREENSHOTS = ROOT / "screenshots"
-PATIENCE = 60_000  # milliseconds; these machines are slow at times
 FRAME = "name => viewer.scene_tree.find(['meshcat', 'frames', name]).object.matrix.elements"
 ROOT_MATRIX = (
     "() => { const o = viewer.scene_tree.find(['meshcat']).object; o.updateMatrix(); return o.matrix.elements }"
@@ -43,7 +37,7 @@ def server(tmp_path_factory):
 def page(browser):
     """A page in which nothing of ours may complain: an error on the console is an error of the test."""
     context = browser.new_context(viewport={"width": 1100, "height": 900})
-    context.set_default_timeout(PATIENCE)
+    context.set_default_timeout(1000 * PATIENCE)
     found, opened = [], context.new_page()
     opened.on("pageerror", lambda error: found.append((str(error), re.search(r"at .*|$", error.stack or "")[0])))
     opened.on("console", lambda said: said.type == "error" and found.append((said.text, said.location["url"])))
@@ -71,10 +65,7 @@ def picture(scene, name):
 
 def until(scene, name, expected):
     """Wait until a frame of the scene is at `expected`, a 4x4 matrix, as it comes from the kernel."""
-    deadline = time.monotonic() + 20
-    while not np.allclose(found := frame_in(scene, name), expected, atol=1e-6) and time.monotonic() < deadline:
-        scene.wait_for_timeout(50)
-    np.testing.assert_allclose(found, expected, atol=1e-6)
+    wait_for(lambda: np.allclose(frame_in(scene, name), expected, atol=1e-6))
 
 
 def about_z(degrees):
@@ -262,9 +253,8 @@ def saved(page, server, name, copy):
     notebook = Opened(page, server, name)
     notebook.run_all()
     notebook.command("docmanager:save")
-    path, deadline = server.folder / f"{name}.ipynb", time.monotonic() + 30
-    while "<iframe" not in path.read_text() and time.monotonic() < deadline:
-        page.wait_for_timeout(200)
+    path = server.folder / f"{name}.ipynb"
+    wait_for(lambda: page.wait_for_timeout(50) or "<iframe" in path.read_text())
     page.wait_for_timeout(500)
     server.stop_kernels()
     target = server.folder / f"{copy}.ipynb"

@@ -37,11 +37,11 @@ from types import SimpleNamespace
 import nbformat
 import numpy as np
 import pytest
-import transform_lab
 import support
-from support import ROOT
+import transform_lab
 from formulas import BETWEEN, MEANT_EXACTLY, NUMBER, WORD, Unreadable, World, numbers, statements, wrong
 from scipy.spatial.transform import Rotation
+from support import ROOT
 from transform_lab import tft
 from transform_lab.judging.answers import TOLERANCE
 from transform_lab.viewing import shapes
@@ -392,7 +392,13 @@ SUM = support.points("1_rotation")
     [
         ("1_rotation", "turns-predict", "(-1, 0, 0)", "(1, 0, 0)", "says [1.0, 0.0, 0.0]"),
         ("1_rotation", "columns-say", "0 & -1 & 0", "0 & 1 & 0", "gives [0.0, -1.0, 0.0, 1.0"),
-        ("1_rotation", "title", f"{SUM:g} points", f"{SUM + 1:g} points", f"the sum of nbgrader's cells gives [{SUM:g}]"),
+        (
+            "1_rotation",
+            "title",
+            f"{SUM:g} points",
+            f"{SUM + 1:g} points",
+            f"the sum of nbgrader's cells gives [{SUM:g}]",
+        ),
         ("1_rotation", "same-exercise", "(1 point)", "(2 points)", "nbgrader's cell gives [1]"),
         ("1_rotation", "quaternions-formula", "= 0.3827$", "= 0.3826$", "is not true"),
         ("2_homogeneous_transforms", "example-one", "raised by half a metre", "raised by a metre", "gives [45.0, 0.5]"),

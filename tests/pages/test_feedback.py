@@ -3,8 +3,6 @@
 import json
 import re
 import shutil
-import subprocess
-import sys
 from html.parser import HTMLParser
 
 import nbformat
@@ -12,7 +10,7 @@ import numpy as np
 import pytest
 from nbgrader.api import Gradebook
 from nbgrader.coursedir import CourseDirectory
-from support import ASKED, Parsed, markdown, points, points_by_hand, run
+from support import ASKED, Parsed, key_of, markdown, points, points_by_hand, run
 from transform_lab.judging import panel
 from transform_lab.judging.verdict import Reply, examine
 
@@ -20,7 +18,6 @@ from autograder.bridge import nbgrader_api as api
 from autograder.bridge.gradebook import Writer
 from autograder.bridge.nbgrader_api import settings
 from autograder.course import ASSIGNMENT, Course
-from autograder.exercises import EXERCISES, key
 from autograder.grading import public_example
 from autograder.grading.records import RECORD, recorded
 from autograder.pages import examples, feedback
@@ -36,7 +33,7 @@ TWO_MISTAKES = """def pre_grasp(object_pose, distance=0.1):
 """
 PUBLIC_ANSWERS_ONLY = f"""import json
 from transform_lab.judging import codec
-KNOWN = json.loads({json.dumps([(c["args"], c["expected"]) for c in key(EXERCISES["transform_point"], 24)["cases"]])!r})
+KNOWN = json.loads({json.dumps([(c["args"], c["expected"]) for c in key_of("transform_point")["cases"]])!r})
 def transform_point(a_T_b, p_in_b):
     for given, expected in KNOWN:
         if given == [codec.encode(a_T_b), codec.encode(p_in_b)]:
@@ -51,7 +48,7 @@ def make_transform(R, p):
         import os
         os._exit(1)
     return np.eye(4) * calls
-""".replace("HIDDEN", str(len(key(EXERCISES["make_transform"], 1)["cases"])))
+""".replace("HIDDEN", str(len(key_of("make_transform")["cases"])))
 HALF_A_CHARACTER = "def make_transform(R, p):\n    return ['\\ud800', '<script>MARK()</script>', R[0, 0]]\n"
 LOUD = """import base64, os
 from IPython.display import Image, display
@@ -142,10 +139,10 @@ def test_no_hidden_number_is_told(classroom):
     seed = recorded(classroom, "ben")[TWO]["seed"]
     for exercise, name in (("transform_point", TWO), ("pre_grasp", FIVE)):
         told = read(classroom, "ben", name) + read(classroom, "ben")
-        hidden = {f"{number:.4g}" for case in key(EXERCISES[exercise], seed)["cases"] for number in numbers(case)}
+        hidden = {f"{number:.4g}" for case in key_of(exercise, seed)["cases"] for number in numbers(case)}
         hidden = {number for number in hidden if len(number.lstrip("-0.")) >= 4}
         assert len(hidden) > 50
-        public = {f"{number:.4g}" for case in key(EXERCISES[exercise], 24)["cases"] for number in numbers(case)}
+        public = {f"{number:.4g}" for case in key_of(exercise)["cases"] for number in numbers(case)}
         shown = set(re.findall(r"-?\d+\.\d+", told))
         assert shown & public
         assert not {number for number in shown & (hidden - public) if number not in page(classroom, "ada", name)}
@@ -180,7 +177,7 @@ def test_an_odd_answer_is_escaped(classroom):
 
 
 def test_an_answer_that_no_file_can_hold_is_no_example():
-    exercise = public_example.public_cases(json.dumps({"exercises": {"chain": key(EXERCISES["chain"], 24)}}))["chain"]
+    exercise = public_example.public_cases(json.dumps({"exercises": {"chain": key_of("chain")}}))["chain"]
     wrong = examine("chain", exercise, lambda args, kwargs: Reply("returned", None, [args, kwargs]))
     given = [exercise["cases"][0]["args"], {}]
     assert public_example.find(wrong, exercise, lambda args, kwargs: Reply("returned", [float("nan")], given)) is None
@@ -235,26 +232,20 @@ def course_of_ben(classroom, tmp_path):
 # --- the same through nbgrader's own commands ------------------------------------------------------------------------
 
 
-def nbgrader(course, *arguments):
-    command = [sys.executable, "-m", "nbgrader", *arguments]
-    done = subprocess.run(
-        command, cwd=course.root, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=300
-    )
-    assert done.returncode == 0, done.stderr
-
-
-def test_nbgraders_own_command_makes_the_same_pages_and_no_summary(course_of_ben):
+def test_nbgraders_own_command_makes_the_same_pages_and_no_summary(course_of_ben, nbgrader):
     before = {name: page(course_of_ben, "ben", name) for name in (TWO, FIVE)}
-    nbgrader(course_of_ben, "generate_feedback", ASSIGNMENT, "--student", "ben", "--force")
+    done = nbgrader(course_of_ben, "generate_feedback", ASSIGNMENT, "--student", "ben", "--force")
+    assert done.returncode == 0, done.stderr
     assert {name: page(course_of_ben, "ben", name) for name in (TWO, FIVE)} == before
     assert not (course_of_ben.feedback("ben") / "index.html").exists()
     with Writer(course_of_ben) as writer:
         assert not feedback.is_complete(course_of_ben, "ben", writer.grades()["ben"])
 
 
-def test_nbgraders_own_grading_finds_the_same_examples(course_of_ben):
+def test_nbgraders_own_grading_finds_the_same_examples(course_of_ben, nbgrader):
     before = {name: recorded(course_of_ben, "ben")[name]["examples"] for name in (TWO, FIVE)}
-    nbgrader(course_of_ben, "autograde", ASSIGNMENT, "--student", "ben", "--force")
+    done = nbgrader(course_of_ben, "autograde", ASSIGNMENT, "--student", "ben", "--force")
+    assert done.returncode == 0, done.stderr
     assert {name: recorded(course_of_ben, "ben")[name]["examples"] for name in (TWO, FIVE)} == before
     assert before[TWO].keys() == {"transform_point"} and before[FIVE].keys() == {"pre_grasp"}
 
@@ -310,7 +301,7 @@ def test_the_section_to_read_again(released, exercise, section):
 
 
 def test_each_hint_stands_beside_its_mistake():
-    exercise = key(EXERCISES["pre_grasp"], 24)
+    exercise = key_of("pre_grasp")
 
     def wrong(args, kwargs):
         distance = (args[1:] or [kwargs.get("distance", 0.1)])[0]

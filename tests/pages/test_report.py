@@ -9,7 +9,7 @@ from urllib.parse import unquote
 
 import nbformat
 import pytest
-from support import nbgrader, run, verdicts
+from support import run, verdicts
 
 from autograder.bridge.gradebook import Writer
 from autograder.course import Course
@@ -256,7 +256,7 @@ def test_distribution_has_everybody_once():
     assert sum(count for _, count in bars) == 6
 
 
-def test_grades_csv_is_what_nbgrader_exports(course):
+def test_grades_csv_is_what_nbgrader_exports(course, nbgrader):
     ours = (course.reports / "grades.csv").read_text()
     result = nbgrader(course, "export")
     assert result.returncode == 0, result.stderr

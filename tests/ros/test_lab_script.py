@@ -6,8 +6,7 @@ import sys
 
 import nbformat
 import pytest
-from nbclient import NotebookClient
-from support import ROOT
+from support import PATIENCE, ROOT
 from transform_lab import Marker, Viewer, rospy
 
 ON_A_ROBOT = ROOT / "tests/ros/lab/transformation_demo.py"  # as the lab has it
@@ -31,7 +30,7 @@ def run_script(text, folder):
     environment = {"PYTHONPATH": str(ROOT / "source/transforms"), "PATH": "", "MPLCONFIGDIR": str(folder)}
     return subprocess.run(
         [sys.executable, "-W", "ignore", "transformation_demo.py"],
-        cwd=folder, env=environment, capture_output=True, text=True, timeout=120,
+        cwd=folder, env=environment, capture_output=True, text=True, timeout=PATIENCE,
     )  # fmt: skip
 
 
@@ -76,14 +75,14 @@ rospy.init_node("two")
     assert "marker /0 in a: CUBE" in (tmp_path / "one.html").read_text()
 
 
-def test_in_a_notebook_the_scene_appears_below_the_cell(tmp_path):
+def test_in_a_notebook_the_scene_appears_below_the_cell(tmp_path, run_all):
     import shutil
 
     (tmp_path / "transformation_demo.py").write_text(solved())
     shutil.copytree(ROOT / "source/transforms/transform_lab", tmp_path / "transform_lab")
     sources = ["%run transformation_demo.py", solved(), "1 + 1"]
     notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(source) for source in sources])
-    NotebookClient(notebook, timeout=120, resources={"metadata": {"path": str(tmp_path)}}).execute()
+    run_all(notebook, tmp_path)
     shown = [[o.data for o in cell.outputs if "text/html" in o.get("data", {})] for cell in notebook.cells]
     assert [len(scenes) for scenes in shown] == [1, 1, 0]
     for (scene,) in shown[:2]:

@@ -4,17 +4,15 @@ All run in one grader, started as root, beside a course in a closed folder. What
 """
 
 import json
-import os
 import shutil
 import signal
 import subprocess
 import sys
 import textwrap
-import time
 from pathlib import Path
 
 import pytest
-from support import MADE_AT_RUN_TIME, ROOT
+from support import MADE_AT_RUN_TIME, ROOT, wait_for
 
 GRADER = """
 import json, os, pathlib, sys
@@ -175,15 +173,15 @@ def test_a_notebook_ends_with_its_grader(open_python, closed):
     with start(open_python, closed) as grader:
         grader.stdin.write(json.dumps([f"{TRIED}open('pid', 'w').write(str(os.getpid())); time.sleep(600)"]))
         grader.stdin.close()
-        pid, patience = None, time.monotonic() + 30
-        while not pid and time.monotonic() < patience:
-            found = [Path("/proc", name) for name in os.listdir("/proc") if name.isdigit()]
-            pid = next((path for path in found if sleeps_in_a_notebook(path, grader.pid)), None)
-        assert pid
+        found = []
+
+        def sleeping():
+            found[:] = [path for path in Path("/proc").glob("[0-9]*") if sleeps_in_a_notebook(path, grader.pid)]
+            return found
+
+        wait_for(sleeping)
         grader.send_signal(signal.SIGKILL)
-    while pid.exists() and time.monotonic() < patience:
-        time.sleep(0.05)
-    assert not pid.exists()
+    wait_for(lambda: not found[0].exists())
 
 
 def sleeps_in_a_notebook(path, grader):

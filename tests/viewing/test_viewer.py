@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 import umsgpack
 from PIL import Image
-from support import CHROMIUM_FLAGS, SOFTWARE_WEBGL
+from support import CHROMIUM_FLAGS, PATIENCE, SOFTWARE_WEBGL
 from transform_lab import tft
 from transform_lab.lab_markers import arrow_marker, axis_marker
 from transform_lab.messages import ColorRGBA, Header, Marker, Point, Pose, PoseStamped, Quaternion, Vector3
@@ -657,7 +657,7 @@ def dom(chromium, tmp_path):
             f"--user-data-dir={tmp_path / 'profile'}",
             (tmp_path / "page.html").as_uri(),
         ]
-        return subprocess.run(command, capture_output=True, text=True, timeout=60, check=True).stdout
+        return subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE, check=True).stdout
 
     return elements
 

@@ -1,16 +1,17 @@
 #! /usr/bin/env python
 
 import math
-
 import numpy as np
-import rospy
-import visualization_msgs.msg
 from geometry_msgs.msg import Point, Pose, PoseStamped
 from std_msgs.msg import ColorRGBA
+import visualization_msgs.msg
+import rospy
+import tf.transformations as tft
 
 
 def wait_for_time():
-    """Wait for simulated time to begin."""
+    """Wait for simulated time to begin.
+    """
     while rospy.Time().now().to_sec() == 0:
         pass
 
@@ -25,7 +26,7 @@ def sind(degs):
 
 def axis_marker(pose_stamped):
     marker = visualization_msgs.msg.Marker()
-    marker.ns = "axes"
+    marker.ns = 'axes'
     marker.header = pose_stamped.header
     marker.pose = pose_stamped.pose
     marker.type = visualization_msgs.msg.Marker.LINE_LIST
@@ -56,9 +57,9 @@ def transform_to_pose(matrix):
 
 def arrow_marker(point):
     marker = visualization_msgs.msg.Marker()
-    marker.ns = "arrow"
+    marker.ns = 'arrow'
     marker.type = visualization_msgs.msg.Marker.ARROW
-    marker.header.frame_id = "frame_a"
+    marker.header.frame_id = 'frame_a'
     marker.points.append(Point(0, 0, 0))
     marker.points.append(point)
     marker.scale.x = 0.1
@@ -70,24 +71,30 @@ def arrow_marker(point):
 
 
 def main():
-    rospy.init_node("transformation_demo")
+    rospy.init_node('transformation_demo')
     wait_for_time()
-    viz_pub = rospy.Publisher("visualization_marker", visualization_msgs.msg.Marker, queue_size=1)
+    viz_pub = rospy.Publisher(
+        'visualization_marker', visualization_msgs.msg.Marker, queue_size=1)
     rospy.sleep(0.5)
 
-    b_in_a = np.array([[cosd(45), -sind(45), 0, 0], [sind(45), cosd(45), 0, 0], [0, 0, 1, 0.5], [0, 0, 0, 1]])
+    b_in_a = np.array([
+        [cosd(45), -sind(45), 0, 0],
+        [sind(45), cosd(45), 0, 0],
+        [0, 0, 1, 0.5],
+        [0, 0, 0, 1]
+    ])
     ps = PoseStamped()
-    ps.header.frame_id = "frame_a"
+    ps.header.frame_id = 'frame_a'
     ps.pose = transform_to_pose(b_in_a)
     viz_pub.publish(axis_marker(ps))
 
-    # point_in_b = np.array([1, 0, 0, 1])
-    # point_in_a = np.dot(b_in_a, point_in_b)
-    # rospy.loginfo(point_in_b)
-    # rospy.loginfo(point_in_a)
-    # point = Point(point_in_a[0], point_in_a[1], point_in_a[2])
-    # viz_pub.publish(arrow_marker(point))
+    #point_in_b = np.array([1, 0, 0, 1])
+    #point_in_a = np.dot(b_in_a, point_in_b)
+    #rospy.loginfo(point_in_b)
+    #rospy.loginfo(point_in_a)
+    #point = Point(point_in_a[0], point_in_a[1], point_in_a[2])
+    #viz_pub.publish(arrow_marker(point))
 
 
-if __name__ == "__main__":
+if __name__ == '__main__':
     main()
