@@ -11,15 +11,14 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import nbformat
-from transform_lab.judging import panel
 
 from ..exercises import EXERCISES, key
 from ..intake.restore import restore
 from ..sandbox import Limits, Sandbox
-from .digests import specification
+from . import digests
 from .judge import judge, rows
 from .public_example import public_cases
-from .records import RECORD, missing
+from .records import RECORD, missing, told
 
 
 @dataclass(frozen=True)
@@ -59,7 +58,7 @@ def grading_run(course, seed, limits=Limits(), isolated=True, notebooks=None):
     keys = {name: key(EXERCISES[name], seed) for name in names}
     key_file = course.release / "transform_lab" / "key.json"
     public = public_cases(key_file.read_text(encoding="utf-8")) if key_file.is_file() else {}
-    digest = specification(course)
+    digest = digests.of_grades(course, limits)
     return GradingRun(dict(course.notebooks), keys, course.package, seed, digest, limits, isolated, public)
 
 
@@ -97,8 +96,7 @@ def grade_notebook(intake, released, run, sandbox, submission):
     intake.notebook.metadata[RECORD] = nbformat.from_dict(
         {
             "rows": [asdict(row) for row in rows(released, verdicts)],
-            "mistakes": {name: panel.mistakes(verdict) for name, verdict in verdicts.items()},
-            "undone": [name for name, verdict in verdicts.items() if not verdict.done],
+            "verdicts": {name: told(verdict) for name, verdict in verdicts.items()},
             "examples": examples,
             "problems": [*submission.problems, *intake.problems],
             "seed": run.seed,

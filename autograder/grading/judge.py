@@ -135,15 +135,20 @@ def _stopped(ended):
     }
 
 
+def opinion(verdict):
+    """What a Verdict says, as an output of its test cell."""
+    data = {"text/plain": panel.text(verdict, numbers=False), "text/html": panel.html(verdict, numbers=False)}
+    return {"output_type": "display_data", "data": data, "metadata": {}}
+
+
 def _show(cell, verdict, points):
     """The verdict as the cell's output; nbgrader takes the number of its result as the cell's points."""
     earned = score(verdict, points)
     cell.execution_count = None
-    opinion = {"text/plain": panel.text(verdict, numbers=False), "text/html": panel.html(verdict, numbers=False)}
     result = {"text/plain": repr(earned), "text/html": f"<div>{earned:g} of {points:g} points</div>"}
     cell.outputs = nbformat.from_dict(
         [
-            {"output_type": "display_data", "data": opinion, "metadata": {}},
+            opinion(verdict),
             {"output_type": "execute_result", "data": result, "metadata": {}, "execution_count": None},
         ]
     )

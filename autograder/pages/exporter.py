@@ -12,7 +12,8 @@ from nbconvert.exporters import HTMLExporter
 from nbgrader.preprocessors import GetGrades
 from nbgrader.utils import is_grade
 
-from ..grading.records import RECORD
+from ..grading.judge import opinion
+from ..grading.records import RECORD, verdicts
 from . import examples
 from .rendering import points
 
@@ -45,6 +46,7 @@ class Feedback(HTMLExporter):
 
     def from_notebook_node(self, nb, resources=None, **kwargs):
         nb = copy.deepcopy(nb)
+        self._word_anew(nb)
         self._add_examples(nb)
         for budget in SHOWN:
             page, made = super().from_notebook_node(shortened(nb, budget), copy.deepcopy(resources), **kwargs)
@@ -52,6 +54,14 @@ class Feedback(HTMLExporter):
                 return page, made
         nb.cells = [cell for cell in nb.cells if "nbgrader" in cell.metadata]  # thousands of cells of their own
         return super().from_notebook_node(shortened(nb, 0), resources, **kwargs)
+
+    def _word_anew(self, nb):
+        """The verdicts in today's words; the notebook has those of the day it was graded."""
+        found = verdicts(nb.metadata.get(RECORD, {}))
+        for cell in nb.cells:
+            name = cell.metadata.get("nbgrader", {}).get("grade_id")
+            if name in found and is_grade(cell) and cell.get("outputs"):
+                cell.outputs[0] = nbformat.from_dict(opinion(found[name]))
 
     def _add_examples(self, nb):
         """After the verdict on an exercise, its mistake in numbers and as a picture, of a case that is no secret."""

@@ -10,11 +10,14 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict
 from urllib.parse import quote
 
+from transform_lab.judging import panel
+
 from ..bridge import nbgrader_api
 from ..course import ASSIGNMENT, CourseError
 from ..files import replace
+from ..grading import digests
 from ..grading.marks import CellGrade, NotebookGrades
-from ..grading.records import recorded
+from ..grading.records import recorded, verdicts
 from ..grading.workers import end_with_parent
 from ..released import without_points
 from .markdown import heading
@@ -47,9 +50,9 @@ def _is_whole(page):
 
 
 def _digest(course, student, grades):
-    """Stands in the summary for the grades, and the grading, that it was made from."""
+    """Stands in the summary for the grades and the grading that it was made from, and for what made it."""
     graded = [(name, record["seed"], record["graded"]) for name, record in recorded(course, student).items()]
-    told = graded, {name: asdict(of) for name, of in grades.items()}
+    told = digests.of_pages(course), graded, {name: asdict(of) for name, of in grades.items()}
     return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
 
 
@@ -96,8 +99,8 @@ def summary(course, student, grades):
 def _notebook(released, grades, record):
     """One notebook as the template takes it; `record` is None for one that was not handed in."""
     page = f"{quote(released.name)}.html" if record else ""
-    asked = released.points | released.questions
-    cells = {name: _cell(name, most, released, grades, record, page) for name, most in asked.items()}
+    asked, found = released.points | released.questions, verdicts(record) if record else {}
+    cells = {name: _cell(name, most, released, grades, found.get(name), page) for name, most in asked.items()}
     return {
         "title": released.title,
         "page": page,
@@ -109,8 +112,11 @@ def _notebook(released, grades, record):
     }
 
 
-def _cell(name, most, released, grades, record, page):
-    """One exercise or question, worth `most` points, as the template takes it."""
+def _cell(name, most, released, grades, verdict, page):
+    """One exercise or question, worth `most` points, as the template takes it.
+
+    verdict: on an exercise; None where a damaged record has lost it, which costs only what is said of it
+    """
     told = grades.cells.get(name, CellGrade(0.0, most, False))
     section = released.section(name)
     return {
@@ -120,16 +126,8 @@ def _cell(name, most, released, grades, record, page):
         "right": told.earned >= most,
         "waiting": told.waiting,
         "comment": grades.comments.get(name, ""),
-        "mistakes": _mistakes(record, name),
+        "mistakes": panel.mistakes(verdict) if verdict else [],
         "link": page and f"{page}#{quote(name)}",
         "section": without_points(section),
         "again": page and f"{page}#{quote(heading(section)[0])}",
     }
-
-
-def _mistakes(record, name):
-    """[(what was found, what helps), …] of an exercise; none in a damaged record, which costs only these."""
-    try:
-        return [(str(says), str(hint)) for says, hint in record["mistakes"][name]]
-    except (KeyError, TypeError, ValueError):
-        return []

@@ -10,7 +10,9 @@ from datetime import UTC, datetime
 from math import ceil
 from typing import NamedTuple
 
-from ..grading.records import missing, recorded
+from transform_lab.judging import panel
+
+from ..grading.records import missing, recorded, verdicts
 from ..intake.submission import NOT_HANDED_IN
 
 MOST_BARS = 10  # of the distribution of points, besides the one for all points
@@ -57,8 +59,10 @@ def work(course, student):
             continue
         record = records[name]
         found.rows += record["rows"]
-        found.said |= record.get("mistakes", {})
-        found.undone.update(record.get("undone", ()))
+        for exercise, verdict in verdicts(record).items():
+            found.said[exercise] = panel.mistakes(verdict)
+            if not verdict.done:
+                found.undone.add(exercise)
         problems |= dict.fromkeys(record["problems"])
         graded = datetime.fromisoformat(record["graded"]).astimezone()
         found.runs[record["seed"]] = max(graded, found.runs.get(record["seed"], graded))

@@ -210,7 +210,7 @@ def test_a_damaged_record_costs_the_example_alone(course_of_ben):
     notebook = nbformat.read(path, as_version=4)
     record = notebook.metadata[RECORD]
     record.examples.transform_point = record.examples.transform_point.replace('"shape": [4, 4]', '"shape": [7]')
-    record.mistakes.transform_point = 7
+    record.verdicts.transform_point = 7
     nbformat.write(notebook, path)
     api.call(course_of_ben, "generate_feedback", ASSIGNMENT, "ben")
     with Writer(course_of_ben) as writer:

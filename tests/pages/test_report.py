@@ -267,7 +267,7 @@ def test_grades_csv_is_what_nbgrader_exports(course, nbgrader):
 def test_records_of_an_older_grader_are_reported_without_words(course):
     for path in course.root.glob("autograded/*/transforms/*.ipynb"):
         notebook = nbformat.read(path, as_version=4)
-        del notebook.metadata.transform_lab["mistakes"], notebook.metadata.transform_lab["undone"]
+        del notebook.metadata.transform_lab["verdicts"]
         nbformat.write(notebook, path)
     make(course)
     words = read(course).words
