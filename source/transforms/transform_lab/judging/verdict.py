@@ -6,7 +6,7 @@ called in another process), so a student and an instructor never see two opinion
 An exercise, as `examine` takes it, is a dictionary of plain data:
 
 - `parameters`: the names of the function's parameters, a star before one that takes any number of arguments
-- `returns`: the kind of answer, one of transform_lab.judging.answers.PARTS; `answer`: its name, such as "b_T_a"
+- `returns`: the kind of answer, one of transform_lab.judging.kinds.KINDS; `answer`: its name, such as "b_T_a"
 - `credit`: {part of the answer: what that part alone is worth}, as shares of the points; all parts are worth 1
 - `weights`: {family of cases: how much it counts}
 - `misconceptions`: [{"id", "says", "hint"}, …]
@@ -18,8 +18,10 @@ An exercise, as `examine` takes it, is a dictionary of plain data:
 from dataclasses import dataclass, field
 
 from . import codec
-from .answers import PARTS, Unfit, agree, parts_of
+from .answers import parts_of
 from .diagnosis import constant, diagnose
+from .kinds import KINDS
+from .reading import Unfit
 
 LOOP = "Look for a loop that never ends, or a function that calls itself for ever."
 
@@ -93,7 +95,7 @@ def examine(name, exercise, call):
     verdict = Verdict(
         name,
         credit=_credit(exercise, outcomes),
-        parts={part: sum(part in outcome.parts for outcome in outcomes) for part in PARTS[returns]},
+        parts={part: sum(part in outcome.parts for outcome in outcomes) for part in KINDS[returns].parts},
         cases=len(cases),
         returns=returns,
         wanted=exercise["answer"],
@@ -138,8 +140,9 @@ def compare(returns, case, reply):
         got = parts_of(returns, codec.decode(reply.value))
     except Unfit as unfit:
         return Outcome(problem=(unfit.misconception, str(unfit)), mutated=mutated)
-    good = frozenset(part for part in PARTS[returns] if agree(part, got[part], expected[part]))
-    return Outcome(good, len(good) == len(PARTS[returns]), got, mutated=mutated)
+    parts = KINDS[returns].parts
+    good = frozenset(name for name, part in parts.items() if part.agree(got[name], expected[name]))
+    return Outcome(good, len(good) == len(parts), got, mutated=mutated)
 
 
 def _credit(exercise, outcomes):
