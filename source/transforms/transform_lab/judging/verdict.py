@@ -22,6 +22,7 @@ from .answers import parts_of
 from .diagnosis import constant, diagnose
 from .kinds import KINDS
 from .reading import Unfit
+from .status import refuse_unknown
 
 LOOP = "Look for a loop that never ends, or a function that calls itself for ever."
 
@@ -56,7 +57,7 @@ class Outcome:
 class Verdict:
     """What is known about one exercise of one student.
 
-    status: "graded", "error", "timeout", "killed", "missing" or "unreadable" (see the design's verdicts.csv)
+    status: one of transform_lab.judging.status.STATUSES
     credit: from 0 to 1; 1 only when every case is right
     misconceptions: ids; more than one when the answer has several mistakes at once
     """
@@ -77,6 +78,9 @@ class Verdict:
     answer: object = None  # the student's answer to it, decoded
     error: str = ""  # or the error that was raised instead
 
+    def __post_init__(self):
+        refuse_unknown(self.status)
+
     @property
     def right(self):
         return self.credit == 1.0
@@ -94,6 +98,7 @@ def examine(name, exercise, call):
     outcomes = [compare(returns, case, reply) for case, reply in zip(cases, replies)]
     verdict = Verdict(
         name,
+        "error" if all(reply.outcome == "raised" for reply in replies) else "graded",
         credit=_credit(exercise, outcomes),
         parts={part: sum(part in outcome.parts for outcome in outcomes) for part in KINDS[returns].parts},
         cases=len(cases),
@@ -103,8 +108,6 @@ def examine(name, exercise, call):
     )
     if all(outcome.right for outcome in outcomes):
         return verdict
-    if all(reply.outcome == "raised" for reply in replies):
-        verdict.status = "error"
     if constant(replies):
         verdict.credit = 0.0
     verdict.misconceptions, verdict.says, verdict.hint = diagnose(exercise, replies, outcomes)
