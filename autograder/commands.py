@@ -314,9 +314,8 @@ def _show_class(found, students):
         points = f"{sum(row.score for row in rows):g} of {sum(row.max_score for row in rows):g}"
         said = {}
         for row in rows:
-            what = row.misconception or row.status
-            if what != "graded":
-                said.setdefault(what, []).append(row.exercise)
+            if row.remark:
+                said.setdefault(row.remark, []).append(row.exercise)
         _add_row(table, student, points, "; ".join(f"{what} ({', '.join(names)})" for what, names in said.items()))
     console.print(table)
 

@@ -10,8 +10,10 @@ from inspect import signature
 
 import numpy as np
 from transform_lab.judging import codec
-from transform_lab.judging.answers import PARTS, same
+from transform_lab.judging.answers import same
+from transform_lab.judging.comparison import frames_of
 from transform_lab.judging.diagnosis import error_of, open_parts_of
+from transform_lab.judging.kinds import KINDS
 
 PUBLIC_SEED = 24  # the cases students see; any other seed draws hidden ones
 DIGITS = 12  # decimals kept of arguments and right answers: far below the tolerance of 1e-6
@@ -44,8 +46,9 @@ class Exercise:
     """One exercise.
 
     name: of the student's function, of its test cell, and of the row in every report
-    returns: the kind of answer, a key of transform_lab.judging.answers.PARTS
-    answer: its name, "b_T_a" or "p_in_a", which tells the frame it is given in; names of parameters do the same
+    returns: the kind of answer, a key of transform_lab.judging.kinds.KINDS
+    answer: its name, "b_T_a" or "p_in_a", which tells the frame it is given in; names of parameters do the same. Empty for
+        what is given in none, and not drawn
     reference: the right solution
     cases: from a NumPy random generator to a list of Case; the same families for every seed
     misconceptions: see Misconception
@@ -63,7 +66,13 @@ class Exercise:
     weights: dict = field(default_factory=dict)
 
     def __post_init__(self):
-        unknown = set(self.credit) - set(PARTS[self.returns])
+        if self.returns not in KINDS:
+            raise ValueError(f"{self.name}: {self.returns!r} is no kind of answer; there are {', '.join(KINDS)}")
+        if self.answer and not frames_of(self.answer):
+            raise ValueError(
+                f"{self.name}: {self.answer!r} tells no frame; call the answer b_T_a or p_in_a, or nothing"
+            )
+        unknown = set(self.credit) - set(KINDS[self.returns].parts)
         if unknown or sum(self.credit.values()) > 1:
             raise ValueError(f"{self.name}: credit {self.credit} does not fit an answer of kind {self.returns}")
 

@@ -11,6 +11,7 @@ from types import MappingProxyType
 
 import nbformat
 from transform_lab.judging import panel
+from transform_lab.judging.status import STATUSES, refuse_unknown
 from transform_lab.judging.verdict import Verdict, examine
 
 from ..sandbox import Ended
@@ -18,18 +19,13 @@ from ..untrusted import safe
 from . import public_example
 
 MOST_RESTARTS = 10  # times a notebook is run again without the cell or call that brought its process down
-NOT_GRADED = {
-    "missing": "The test cell of this exercise is missing from the file.",
-    "unreadable": "The file could not be read.",
-}
 
 
 @dataclass(frozen=True)
 class Row:
     """One student's exercise: a row of verdicts.csv without the student's name.
 
-    status: "graded"; "missing" (no such notebook or cell); "error" (it raised, is not done, or its cell was never
-    reached); "timeout"; "killed" (it ended its process, or reached a limit); "unreadable" (the file)
+    status: one of transform_lab.judging.status.STATUSES
     misconception: ids, joined by ";"; empty when none explains the answers
     """
 
@@ -39,6 +35,14 @@ class Row:
     max_score: float
     status: str
     misconception: str = ""
+
+    def __post_init__(self):
+        refuse_unknown(self.status)
+
+    @property
+    def remark(self):
+        """What a table says of it in a word: the misconceptions, or the status when it was not graded; else ""."""
+        return self.misconception or ("" if self.status == "graded" else self.status)
 
 
 def judge(intake, released, keys, sandbox, public=MappingProxyType({})):
@@ -50,7 +54,7 @@ def judge(intake, released, keys, sandbox, public=MappingProxyType({})):
     public: {exercise: plain data}, from public_example.public_cases
     """
     examples = {}
-    verdicts = {name: Verdict(name, status, says=NOT_GRADED[status]) for name, status in intake.statuses.items()}
+    verdicts = {name: Verdict(name, status, says=STATUSES[status].means) for name, status in intake.statuses.items()}
     if set(verdicts) != set(released.points):
         skip, deadline = set(), time.monotonic() + sandbox.limits.notebook
         for _ in range(MOST_RESTARTS + 1):

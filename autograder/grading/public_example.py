@@ -7,6 +7,7 @@ one of them, with the student's own answer to it, may be shown as `check` shows 
 import json
 import time
 
+from transform_lab.judging.status import STATUSES, STOPPED
 from transform_lab.judging.verdict import compare
 
 from ..untrusted import printable
@@ -36,7 +37,7 @@ def find(verdict, exercise, call):
     exercise: plain data, of public_cases
     call: (args, kwargs) -> Reply of the student's function; its replies are untrusted
     """
-    if verdict.failing is None or verdict.status in ("timeout", "killed"):
+    if verdict.failing is None or STATUSES[verdict.status].look == STOPPED:
         return None
     family, latest = verdict.failing["family"], time.monotonic() + MOST_SECONDS
     for case in sorted(exercise["cases"], key=lambda case: case["family"] != family)[:MOST_CALLS]:

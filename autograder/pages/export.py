@@ -133,5 +133,5 @@ def remarks(found, name):
 
 def _said(row):
     """One exercise of Moodle's feedback, such as "chain 0 of 2 (order-reversed)"."""
-    why = row.misconception or (row.status if row.status != "graded" else "")
-    return f"{row.exercise} {row.score:g} of {row.max_score:g}" + (f" ({why.replace(';', ', ')})" if why else "")
+    why = row.remark.replace(";", ", ")
+    return f"{row.exercise} {row.score:g} of {row.max_score:g}" + (f" ({why})" if why else "")

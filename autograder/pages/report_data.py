@@ -11,6 +11,7 @@ from math import ceil
 from typing import NamedTuple
 
 from transform_lab.judging import panel
+from transform_lab.judging.status import STATUSES
 
 from ..grading.records import missing, recorded, verdicts
 from ..intake.submission import NOT_HANDED_IN
@@ -43,7 +44,7 @@ class Work:
         return sum(row.max_score for row in self.rows)
 
     def is_undone(self, row):
-        return row.status == "missing" or row.exercise in self.undone
+        return STATUSES[row.status].counts == "undone" or row.exercise in self.undone
 
 
 def work(course, student):
@@ -178,9 +179,7 @@ def _outcome(work, row):
         return "undone"
     if row.score == row.max_score:
         return "right"
-    if row.misconception:
-        return "named"
-    return "unnamed" if row.status == "graded" else "failed"
+    return "named" if row.misconception else STATUSES[row.status].counts
 
 
 # --- who needs a look -----------------------------------------------------------------------------------------------
@@ -189,33 +188,30 @@ def _outcome(work, row):
 class Look(NamedTuple):
     """Students with the reasons to look at their work.
 
-    stopped, raised: {student: {what was said: [exercises]}}; files: {student: [what was odd]}
+    reasons: {title: {student: {what was said: [exercises]}}}, the titles as in STATUSES; files: {student: [what was odd]}
     absent: {notebook: [students]}
     """
 
-    stopped: dict
-    raised: dict
+    reasons: dict
     files: dict
     absent: dict
 
 
 def look(works):
     """The Look at a class. What is explained by a misconception, and what is just not done, is no reason."""
-    kinds = {"killed": {}, "timeout": {}, "error": {}}
+    reasons = {status.look: {} for status in STATUSES.values() if status.look}
     absent = defaultdict(list)
     for student, found in works.items():
         for row in found.rows:
-            if row.status in kinds and not row.misconception and not found.is_undone(row):
+            title = STATUSES[row.status].look
+            if title and not row.misconception and row.exercise not in found.undone:
                 says = " ".join(says for says, _ in found.said.get(row.exercise, ()))
-                reasons = kinds[row.status].setdefault(student, {})
-                reasons.setdefault(says or f"status {row.status}", []).append(row.exercise)
+                told = reasons[title].setdefault(student, {})
+                told.setdefault(says or f"status {row.status}: {STATUSES[row.status].means}", []).append(row.exercise)
         for notebook in found.absent:
             absent[notebook].append(student)
-    stopped = kinds["killed"]
-    for student, reasons in kinds["timeout"].items():
-        stopped[student] = stopped.get(student, {}) | reasons
     files = {student: found.problems for student, found in works.items() if found.problems}
-    return Look(stopped, kinds["error"], files, dict(sorted(absent.items())))
+    return Look({title: who for title, who in reasons.items() if who}, files, dict(sorted(absent.items())))
 
 
 # --- what changed ---------------------------------------------------------------------------------------------------

@@ -13,7 +13,8 @@ from PIL import Image
 from scipy.spatial.transform import Rotation
 from support import NAMES, ROOT, SEEDS, judged, key_of
 from transform_lab import Point, Pose, Quaternion
-from transform_lab.judging.answers import TOLERANCE, agree, parts_of
+from transform_lab.judging.answers import parts_of
+from transform_lab.judging.kinds import KINDS, TOLERANCE
 
 from autograder.exercises import EXERCISES, PUBLIC_SEED, key
 from autograder.exercises.cases import either_sign, half_turn
@@ -392,7 +393,7 @@ def test_example_1_of_the_lab():
     pose = EXERCISES["transform_to_pose"].reference(example)
     assert [pose.position.x, pose.position.y, pose.position.z] == [0.0, 0.0, 0.5]
     q = parts_of("pose", pose)["orientation"]
-    assert agree("orientation", q, np.array([0.0, 0.0, 0.38268343, 0.92387953]))
+    assert KINDS["pose"].parts["orientation"].agree(q, np.array([0.0, 0.0, 0.38268343, 0.92387953]))
     assert np.allclose(EXERCISES["pose_to_transform"].reference(pose), example)
     point = EXERCISES["transform_point"].reference(example, np.array([1.0, 0.0, 0.0]))
     assert point == pytest.approx([c, c, 0.5])

@@ -9,14 +9,15 @@ from scipy.spatial.transform import Rotation
 from solutions.wrong import WRONG
 from support import SEEDS, judged
 from transform_lab import Point, Pose, Quaternion
-from transform_lab.judging.answers import PARTS, agree, matrix_of, parts_of
+from transform_lab.judging.answers import parts_of
 from transform_lab.judging.diagnosis import GENERAL
+from transform_lab.judging.kinds import KINDS, matrix_of
 from transform_lab.judging.verdict import Reply, examine
 
 from autograder.exercises import EXERCISES, PUBLIC_SEED
 
 every_exercise = pytest.mark.parametrize("name", EXERCISES)
-MATRICES_AND_POSES = [name for name in EXERCISES if len(PARTS[EXERCISES[name].returns]) > 1]
+MATRICES_AND_POSES = [name for name in EXERCISES if len(KINDS[EXERCISES[name].returns].parts) > 1]
 
 
 def split(name, answer):
@@ -212,7 +213,7 @@ def test_most_of_what_students_wrote_has_a_name():
 def of_one_part(name):
     """{part: [misconceptions that leave the other parts right]}"""
     exercise, found = EXERCISES[name], {}
-    cases = exercise.cases(np.random.default_rng(PUBLIC_SEED))
+    cases, parts = exercise.cases(np.random.default_rng(PUBLIC_SEED)), KINDS[exercise.returns].parts
     for misconception in exercise.misconceptions:
         changed = set()
         try:
@@ -220,7 +221,7 @@ def of_one_part(name):
                 for case in cases:
                     right = split(name, exercise.reference(*case.args, **case.kwargs))
                     wrong = split(name, misconception.wrong(*case.args, **case.kwargs))
-                    changed |= {part for part in right if not agree(part, wrong[part], right[part])}
+                    changed |= {one for one, part in parts.items() if not part.agree(wrong[one], right[one])}
         except (ValueError, ArithmeticError, LookupError, TypeError):
             continue  # it answers something of another kind, or nothing
         if len(changed) == 1:
@@ -230,7 +231,7 @@ def of_one_part(name):
 
 @pytest.mark.parametrize("name", MATRICES_AND_POSES)
 def test_two_mistakes_in_two_parts_are_both_named(name):
-    first_part, second_part = PARTS[EXERCISES[name].returns][:2]
+    first_part, second_part = list(KINDS[EXERCISES[name].returns].parts)[:2]
     candidates = of_one_part(name)
     pairs = list(product(candidates.get(first_part, []), candidates.get(second_part, [])))
     whole, right = {misconception.id for misconception in EXERCISES[name].misconceptions}, 0
