@@ -4,13 +4,15 @@ One specification feeds everything: the public key that `check` reads in the not
 the diagnosis in feedback and report, and the tests that prove the grader.
 """
 
+import pickle
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from inspect import signature
 
 import numpy as np
 from transform_lab import codec
-from transform_lab.answers import PARTS, same
+from transform_lab.answers import PARTS, Unfit, is_right, parts_of
 from transform_lab.diagnosis import error_of, open_parts_of
 
 PUBLIC_SEED = 24  # the cases students see; any other seed draws hidden ones
@@ -82,38 +84,57 @@ def key(exercise, seed):
     }
 
 
+def arguments(args, kwargs):
+    """A function that returns a case's arguments (plain data), decoded: fresh objects for each call.
+
+    A copy of them takes a fraction of the time it takes to decode them.
+    """
+    decoded = [codec.decode(arg) for arg in args], {name: codec.decode(arg) for name, arg in kwargs.items()}
+    return partial(pickle.loads, pickle.dumps(decoded, protocol=4))
+
+
 def _case(exercise, case):
     args = [_rounded(codec.encode(arg)) for arg in case.args]
     kwargs = {name: _rounded(codec.encode(arg)) for name, arg in case.kwargs.items()}
-    expected = _answer(exercise.reference, args, kwargs)
-    wrong = [_wrong_answer(misconception, args, kwargs) for misconception in exercise.misconceptions]
+    fresh = arguments(args, kwargs)
+    expected = _answer(exercise.reference, fresh)
+    right = _parts_of_the_right(exercise, case, expected)
+    given, named = fresh()
+    wrong = [_wrong_answer(m, m.varies(*given, **named), fresh) for m in exercise.misconceptions]
     return {
         "family": case.family,
         "args": args,
         "kwargs": kwargs,
         "expected": expected,
         "wrong": [
-            None if _right(exercise.returns, answer, expected) else _rounded(answer, DIGITS_WRONG) for answer in wrong
+            None if _right(exercise.returns, answer, right) else _rounded(answer, DIGITS_WRONG) for answer in wrong
         ],
     }
 
 
-def _wrong_answer(misconception, args, kwargs):
-    open_parts = misconception.varies(
-        *(codec.decode(arg) for arg in args), **{name: codec.decode(arg) for name, arg in kwargs.items()}
-    )
-    answer = {"any": list(open_parts)} if open_parts else _answer(misconception.wrong, args, kwargs)
+def _parts_of_the_right(exercise, case, expected):
+    where = f"{exercise.name}: the reference's answer to a case of {case.family!r}"
+    if error_of(expected):
+        raise ValueError(f"{where} is an error, {error_of(expected)}")
+    try:
+        return parts_of(exercise.returns, codec.decode(expected))
+    except Unfit as unfit:
+        raise ValueError(f"{where} is {unfit}") from unfit
+
+
+def _wrong_answer(misconception, open_parts, fresh):
+    answer = {"any": list(open_parts)} if open_parts else _answer(misconception.wrong, fresh)
     if answer is None:  # which would stand for a right answer in the key
         raise ValueError(f"{misconception.id}: to return None is a misconception of every exercise already")
     return answer
 
 
-def _right(returns, answer, expected):
-    return not error_of(answer) and not open_parts_of(answer) and same(returns, answer, expected)
+def _right(returns, answer, right):
+    return not error_of(answer) and not open_parts_of(answer) and is_right(returns, codec.decode(answer), right)
 
 
-def _answer(function, args, kwargs):
-    args, kwargs = [codec.decode(arg) for arg in args], {name: codec.decode(arg) for name, arg in kwargs.items()}
+def _answer(function, fresh):
+    args, kwargs = fresh()
     with np.errstate(all="ignore"):  # wrong implementations divide by zero; that is their point
         try:
             return _rounded(codec.encode(function(*args, **kwargs)))
@@ -125,7 +146,7 @@ def _rounded(plain, digits=DIGITS):
     if isinstance(plain, float):
         return round(plain, digits) + 0.0
     if isinstance(plain, list):
-        return [_rounded(item, digits) for item in plain]
+        return [round(item, digits) + 0.0 if type(item) is float else _rounded(item, digits) for item in plain]
     if isinstance(plain, dict):
         return {name: _rounded(item, digits) for name, item in plain.items()}
     return plain

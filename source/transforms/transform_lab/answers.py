@@ -59,7 +59,7 @@ def agree(part, got, expected):
     """Whether two values of one part are the same to the tolerance; q and -q are the same orientation."""
     if part == "orientation":
         return bool(min(np.abs(got - expected).max(), np.abs(got + expected).max()) <= TOLERANCE)
-    return bool(np.all(np.abs(got - expected) <= TOLERANCE * np.maximum(1.0, np.abs(expected))))
+    return bool((np.abs(got - expected) <= TOLERANCE * np.maximum(1.0, np.abs(expected))).all())
 
 
 def _truth(answer):
@@ -102,7 +102,7 @@ def _numbers(answer, wanted):
 
 
 def _finite(numbers):
-    if not np.all(np.isfinite(numbers)):
+    if not np.isfinite(numbers).all():
         raise Unfit("not-finite", "NaN or infinity")
     return numbers
 
@@ -125,6 +125,15 @@ def same(returns, one, other):
     except Unfit as unfit:
         return _same_unfit(returns, unfit, one, other)
     return made_of(returns, first, other)
+
+
+def is_right(returns, answer, expected):
+    """Whether `answer` (decoded) agrees with the right answer, given as its parts."""
+    try:
+        got = parts_of(returns, answer)
+    except Unfit:
+        return False
+    return all(agree(part, got[part], expected[part]) for part in expected)
 
 
 def made_of(returns, parts, answer):
