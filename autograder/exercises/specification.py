@@ -53,6 +53,7 @@ class Exercise:
     misconceptions: see Misconception
     credit: what each part of the answer is worth alone; all parts together are worth 1
     weights: how much a family of cases counts; 1 for one that is not here
+    equivalent: mutants that are right, too, as {reason: (what was changed, …)}; see autograder.exercises.equivalent
     """
 
     name: str
@@ -63,6 +64,7 @@ class Exercise:
     misconceptions: tuple = ()
     credit: dict = field(default_factory=dict)
     weights: dict = field(default_factory=dict)
+    equivalent: dict = field(default_factory=dict)
 
     def __post_init__(self):
         unknown = set(self.credit) - set(PARTS[self.returns])
