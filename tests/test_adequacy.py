@@ -28,7 +28,12 @@ every_exercise = pytest.mark.parametrize("name", EXERCISES)
 def test_adequacy(name):
     exercise, course = EXERCISES[name], Course(ROOT)
     tried = to_be_tried(course, exercise)
-    assert notebook_solution(course, name) and {each.kind for each in tried} >= {"misconception", "mutant", "right", "wrong"}
+    assert notebook_solution(course, name) and {each.kind for each in tried} >= {
+        "misconception",
+        "mutant",
+        "right",
+        "wrong",
+    }
     assert not made_no_longer(exercise, tried), "declared as equivalent, and made no longer"
     found = measure(exercise, tried, SEEDS, named=SEEDS[::NAMED_EVERY])
     said = []

@@ -7,7 +7,6 @@ the diagnosis in feedback and report, and the tests that prove the grader.
 import pickle
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import partial
 from inspect import signature
 
 import numpy as np
@@ -18,6 +17,7 @@ from transform_lab.diagnosis import error_of, open_parts_of
 PUBLIC_SEED = 24  # the cases students see; any other seed draws hidden ones
 DIGITS = 12  # decimals kept of arguments and right answers: far below the tolerance of 1e-6
 DIGITS_WRONG = 8  # of wrong answers, which are most of the key
+PROTOCOL = 4  # of pickle; from 5 on, arrays do not own their numbers
 
 
 @dataclass(frozen=True)
@@ -86,19 +86,32 @@ def key(exercise, seed):
     }
 
 
-def arguments(args, kwargs):
-    """A function that returns a case's arguments (plain data), decoded: fresh objects for each call.
+class Arguments:
+    """A case's arguments (plain data), decoded once: a copy takes a fraction of the time that it takes to decode them."""
 
-    A copy of them takes a fraction of the time it takes to decode them.
-    """
-    decoded = [codec.decode(arg) for arg in args], {name: codec.decode(arg) for name, arg in kwargs.items()}
-    return partial(pickle.loads, pickle.dumps(decoded, protocol=4))
+    def __init__(self, args, kwargs):
+        self.plain = args, kwargs
+        decoded = [codec.decode(arg) for arg in args], {name: codec.decode(arg) for name, arg in kwargs.items()}
+        self._pickled = pickle.dumps(decoded, PROTOCOL)
+
+    def fresh(self):
+        """The positional and the keyword arguments, as objects of the caller's own: a function may change them."""
+        return pickle.loads(self._pickled)
+
+    def are(self, args, kwargs):
+        """Whether these arguments are still what they were."""
+        if pickle.dumps((args, kwargs), PROTOCOL) == self._pickled:
+            return True
+        return self.plain == (
+            [codec.encode(arg) for arg in args],
+            {name: codec.encode(arg) for name, arg in kwargs.items()},
+        )
 
 
 def _case(exercise, case):
     args = [_rounded(codec.encode(arg)) for arg in case.args]
     kwargs = {name: _rounded(codec.encode(arg)) for name, arg in case.kwargs.items()}
-    fresh = arguments(args, kwargs)
+    fresh = Arguments(args, kwargs).fresh
     expected = _answer(exercise.reference, fresh)
     right = _parts_of_the_right(exercise, case, expected)
     given, named = fresh()

@@ -16,10 +16,11 @@ from transform_lab.check import reply
 from transform_lab.verdict import examine
 
 from ..exercises import PUBLIC_SEED, key
-from ..exercises.specification import arguments
+from ..exercises.specification import Arguments
 
 NAMED_EVERY = 10  # seeds: what a misconception is called is asked for on each tenth, for it costs all the cases
-LONGEST = 2.0  # seconds of processor time that one function may take for the cases of one seed
+LONGEST = 1.0  # seconds of processor time for the cases of one seed: a mutant's loop may have no end
+LONGEST_RIGHT = 60.0  # for what has to be right, which nobody may cut short because a machine is slow
 
 
 def seeds(number):
@@ -47,21 +48,17 @@ class Cases:
 
     def __init__(self, drawn):
         self.returns, self.plain = drawn["returns"], drawn["cases"]
-        self.fresh = [arguments(case["args"], case["kwargs"]) for case in self.plain]
+        self.arguments = [Arguments(case["args"], case["kwargs"]) for case in self.plain]
         self.right = [parts_of(self.returns, codec.decode(case["expected"])) for case in self.plain]
 
     def passes(self, function, number):
         """Whether a function is right in one case: what `verdict.compare` says of `check.call`, without the words."""
-        (args, kwargs), case = self.fresh[number](), self.plain[number]
+        args, kwargs = self.arguments[number].fresh()
         try:
             answer = function(*args, **kwargs)
         except Exception:
             return False
-        return (
-            is_right(self.returns, codec.decode(codec.encode(answer)), self.right[number])
-            and [codec.encode(arg) for arg in args] == case["args"]
-            and {name: codec.encode(arg) for name, arg in kwargs.items()} == case["kwargs"]
-        )
+        return is_right(self.returns, _as_sent(answer), self.right[number]) and self.arguments[number].are(args, kwargs)
 
     def refusing(self, function, likely=0):
         """The number of a case in which a function is not right, or None; the case `likely` is tried first."""
@@ -83,7 +80,7 @@ def measure(exercise, tried, seeds, named=()):
                 number = likely[index]
                 if index not in endless:
                     try:
-                        with _bounded():
+                        with bounded(LONGEST_RIGHT if each.right else LONGEST):
                             number = cases.refusing(each.function, number)
                     except TooLong:
                         endless.add(index)
@@ -113,8 +110,15 @@ def misnamed(each, found):
 
 def _called(name, drawn, cases, function):
     """The misconceptions that the judge calls a function."""
-    fresh = iter(cases.fresh)
-    return examine(name, drawn, lambda args, kwargs: reply(function, *next(fresh)())).misconceptions
+    arguments = iter(cases.arguments)
+    return examine(name, drawn, lambda args, kwargs: reply(function, *next(arguments).fresh())).misconceptions
+
+
+def _as_sent(answer):
+    """An answer as the judge gets it from another process; most are the same there."""
+    if type(answer) is bool or type(answer) is np.ndarray and answer.dtype == np.float64 and 1 <= answer.ndim <= 2:
+        return answer
+    return codec.decode(codec.encode(answer))
 
 
 @contextmanager
@@ -136,8 +140,8 @@ class TooLong(BaseException):  # no Exception, which a function might catch
 
 
 @contextmanager
-def _bounded():
-    """A block that raises TooLong after LONGEST: a mutant's loop may have no end."""
+def bounded(seconds=LONGEST):
+    """A block that raises TooLong after so much processor time."""
 
     def stop(*_):
         raise TooLong
@@ -146,7 +150,7 @@ def _bounded():
         yield
         return
     before = signal.signal(signal.SIGVTALRM, stop)
-    signal.setitimer(signal.ITIMER_VIRTUAL, LONGEST, LONGEST)
+    signal.setitimer(signal.ITIMER_VIRTUAL, seconds, seconds)
     try:
         yield
     finally:

@@ -25,6 +25,7 @@ class Tried:
     function: Callable
     mutant: Mutant | None = None
     misconception: str = ""  # its id
+    notebook: bool = False  # it is the notebook's solution
 
     @property
     def right(self):
@@ -38,17 +39,19 @@ def to_be_tried(course, exercise):
     changed = {each.what: each for each in mutants(exercise.reference, "autograder.exercises")}
     if solution:
         changed |= {f"{NOTEBOOK}{each.what}": each for each in mutants(solution)}
-        right = {"the notebook's solution": solution, **right}
     alike = {what for what in changed if {what, what.removeprefix(NOTEBOOK)} & _declared(exercise)}
     return [
         *(
-            Tried("misconception", f"{misconception.id} ({number})", misconception.wrong, misconception=misconception.id)
+            Tried(
+                "misconception", f"{misconception.id} ({number})", misconception.wrong, misconception=misconception.id
+            )
             for number, misconception in enumerate(exercise.misconceptions, 1)
         ),
         *(
             Tried("equivalent" if what in alike else "mutant", what, mutant.function, mutant)
             for what, mutant in changed.items()
         ),
+        *([Tried("right", "the notebook's solution", solution, notebook=True)] if solution else []),
         *(Tried("right", label, function) for label, function in right.items()),
         *(Tried("wrong", label, function) for label, function in wrong.items()),
     ]

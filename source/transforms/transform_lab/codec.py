@@ -55,16 +55,24 @@ def encode(value, depth=0):
         return _array(value)
     if depth >= DEEPEST:
         return _other(value)
-    for name, fields in MESSAGES.items():
-        if all(hasattr(value, field) for field in fields):
-            return {
-                "message": name,
-                "fields": {field: encode(getattr(value, field), depth + 1) for field in fields},
-            }
+    if (name := _message(value)) is not None:
+        fields = {field: encode(getattr(value, field), depth + 1) for field in MESSAGES[name]}
+        return {"message": name, "fields": fields}
     if isinstance(value, (list, tuple)) and len(value) <= LONGEST_LIST:
         plain = [encode(item, depth + 1) for item in value]
         return plain if depth or _items(plain) <= LARGEST_ARRAY else _other(value)
     return _other(value)
+
+
+def _message(value):
+    """The name of the message that has the fields of `value`, or None."""
+    for name, fields in MESSAGES.items():
+        for field in fields:
+            if not hasattr(value, field):
+                break
+        else:
+            return name
+    return None
 
 
 def decode(plain, depth=0):
