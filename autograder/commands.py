@@ -24,6 +24,25 @@ UNPROTECTED = (
     "gradebook and other students' work, and use the network."
 )
 
+PROVE = "say what the cases of an exercise do not catch, and which case would"
+PROVE_AT_LENGTH = """\
+Says of each exercise whether its cases, as many seeds draw them, catch all misconceptions (and name each by its own id
+alone), all mutants of the reference and of the notebook's solution (except those that the specification declares as
+equivalent), and your own wrong solutions; and whether they accept your right ones. For what slips through, it searches
+for a case that would catch it, and prints it as code. Exit 0: nothing is open; 1: something is.
+
+Your own solutions are functions in any file of tests/solutions/:
+
+    from solutions.right import right
+    from solutions.wrong import wrong
+
+    @right("chain")
+    def one_by_one(*transforms): ...
+
+    @wrong("chain", "order-reversed")
+    def from_the_back(*transforms): ...
+"""
+
 
 def run(arguments):
     """Run one command; the exit code: 0 done, 1 done but with something to look at, 2 not done."""
@@ -83,6 +102,13 @@ def _parser():
     )
     sub.add_argument("--summary", type=Path, metavar="FILE", help="append the table as Markdown (for GitHub Actions)")
     sandbox_options(sub)
+    sub = add("prove", prove, PROVE)
+    sub.formatter_class = argparse.RawDescriptionHelpFormatter
+    sub.description = PROVE_AT_LENGTH
+    sub.add_argument("exercises", nargs="*", metavar="EXERCISE", help="only these (default: all)")
+    sub.add_argument(
+        "--seeds", type=_positive, default=30, help="draw the cases from so many seeds (default: 30; the tests: 201)"
+    )
     add("doctor", doctor, "say what protects grading on this machine, and what does not")
     sub = add(
         "package", package, "make zips: the notebooks for a learning management system, the grader for Gradescope"
@@ -171,6 +197,37 @@ def package(options):
             markup=False,
         )
     return 0
+
+
+def prove(options):
+    os.environ.setdefault(
+        "OPENBLAS_NUM_THREADS", "1"
+    )  # before NumPy starts more: for 4x4 matrices they only get in the way
+
+    from .exercises import EXERCISES
+    from .proving import show
+    from .proving.adequacy import seeds
+    from .proving.proof import prove, steps
+
+    here, drawn = course(), seeds(options.seeds)
+    names = list(dict.fromkeys(options.exercises)) or list(EXERCISES)
+    for name in names:
+        if name not in EXERCISES:
+            near = difflib.get_close_matches(name, EXERCISES, 1)
+            meant = f" Did you mean {near[0]}?" if near else ""
+            raise CourseError(f"There is no exercise called {name}.{meant} There are {', '.join(EXERCISES)}.")
+    with _progress() as progress:
+        bar = progress.add_task("proving", total=steps(names, drawn), counts="")
+        proofs = list(prove(here, names, drawn, lambda: progress.advance(bar)))
+    console.print(show.summary(proofs, len(drawn)))
+    for proof in proofs:
+        if options.exercises:
+            console.print("", show.misconceptions(proof), sep="\n")
+        for line in show.open_points(proof, here.root):
+            console.print(line)
+    number = sum(proof.open for proof in proofs)
+    console.print(f"\n{number} open." if number else "\nNothing is open.")
+    return 1 if number else 0
 
 
 # --- grading --------------------------------------------------------------------------------------------------------

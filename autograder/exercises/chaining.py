@@ -26,6 +26,7 @@ from .cases import (
     vector,
     wide_turn,
 )
+from .equivalent import MAKING_A_POSE, READING_A_POSE
 from .homogeneous_transforms import (
     BOTTOM_ROW,
     BREAKS_AT_HALF_TURN,
@@ -297,6 +298,7 @@ TRANSFORM_POSE = Exercise(
     cases=transform_pose_cases,
     credit={"position": 0.5, "orientation": 0.5},
     weights={"tilted frames": 2},
+    equivalent=READING_A_POSE | MAKING_A_POSE,
     misconceptions=(
         Misconception(
             "orientation-not-transformed",

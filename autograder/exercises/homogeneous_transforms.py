@@ -30,6 +30,7 @@ from .cases import (
     with_bottom_row,
     x_axis_upright,
 )
+from .equivalent import LISTS, MAKING_A_POSE, READING_A_POSE
 from .rotation import TRUNCATED
 from .specification import Case, Exercise, Misconception
 
@@ -205,6 +206,15 @@ HAND_TRANSFORM = Exercise(
     reference=hand_transform,
     cases=lambda rng: [Case("your hand, rolled to the left and moved closer")],
     credit={"rotation": 0.4, "translation": 0.4},
+    equivalent={
+        LISTS: (
+            "hand_transform: np.array([[1.0, 0.0, 0.0, -0.1], [0.0, 0.0, 1.0, 0.0], [0.0, -1.0, 0.0, 0.0], "
+            "[0.0, 0.0, 0.0, 1.0]]) -> [[1.0, 0.0, 0.0, -0.1], [0.0, 0.0, 1.0, 0.0], [0.0, -1.0, 0.0, 0.0], "
+            "[0.0, 0.0, 0.0, 1.0]]",
+            "hand_transform: np.array([[1, 0, 0, -0.1], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]]) -> "
+            "[[1, 0, 0, -0.1], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]]",
+        )
+    },
     misconceptions=(
         Misconception(
             "rotation-transposed",
@@ -411,6 +421,7 @@ TRANSFORM_TO_POSE = Exercise(
     cases=transform_to_pose_cases,
     credit={"position": 0.5, "orientation": 0.5},
     weights={"a tilted frame": 2},
+    equivalent=MAKING_A_POSE,
     misconceptions=(
         *(
             Misconception(
@@ -584,6 +595,7 @@ POSE_TO_TRANSFORM = Exercise(
     cases=pose_to_transform_cases,
     credit={"rotation": 0.4, "translation": 0.4},
     weights={"a tilted frame": 2},
+    equivalent=READING_A_POSE,
     misconceptions=(
         *(
             Misconception(

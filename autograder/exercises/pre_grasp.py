@@ -28,6 +28,7 @@ from .cases import (
     wide_turn,
     x_axis_upright,
 )
+from .equivalent import MAKING_A_POSE, READING_A_POSE, UPPER_LEFT
 from .homogeneous_transforms import (
     BREAKS_AT_HALF_TURN,
     ENTRY_BY_ENTRY,
@@ -315,6 +316,7 @@ PRE_GRASP = Exercise(
     cases=pre_grasp_cases,
     credit={"position": 0.5},
     weights={"a tilted object": 2},
+    equivalent=READING_A_POSE | MAKING_A_POSE | {UPPER_LEFT: ("transform: 4 -> 5",)},
     misconceptions=(
         *(
             replace(
@@ -377,6 +379,7 @@ WAYPOINT = Exercise(
     cases=waypoint_cases,
     credit={"position": 0.5},
     weights={"a tilted object": 2},
+    equivalent=READING_A_POSE | MAKING_A_POSE | {UPPER_LEFT: ("transform: 4 -> 5",)},
     misconceptions=(
         *SHARED,
         Misconception(

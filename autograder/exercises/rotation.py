@@ -8,6 +8,7 @@ from transform_lab.judging.diagnosis import together
 from transform_lab.judging.kinds import TOLERANCE
 
 from .cases import half_turn, quaternion, rotation, rotation_about, signed_permutations, slanted_axis, tilt, transform
+from .equivalent import LISTS, MINUS_TRUE, NEAR_TOLERANCE, NUMPYS_NUMBERS, NUMPYS_TRUTH, SAME_SIZE
 from .specification import Case, Exercise, Misconception
 
 # --- rotation_about_z -----------------------------------------------------------------------------------------------
@@ -67,6 +68,12 @@ ABOUT_Z = Exercise(
     answer="a_R_b",
     reference=rotation_about_z,
     cases=about_z_cases,
+    equivalent={
+        LISTS: (
+            "rotation_about_z: np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) -> [[c, -s, 0], [s, c, 0], [0, 0, 1]]",
+        ),
+        "a cosine does not know the angle's sign": ("notebook: rotation_about_z: degrees -> -degrees",),
+    },
     misconceptions=(
         Misconception(
             "degrees-as-radians",
@@ -282,6 +289,20 @@ def _close(one, other, tolerance=TOLERANCE):
     return bool(np.all(np.abs(np.asarray(one) - np.asarray(other)) <= tolerance))
 
 
+CLOSE = {  # mutants of _close that are right, too
+    NUMPYS_NUMBERS: ("_close: np.asarray(one) -> one", "_close: np.asarray(other) -> other"),
+    NUMPYS_TRUTH: (
+        "_close: bool(np.all(np.abs(np.asarray(one) - np.asarray(other)) <= tolerance)) -> "
+        "np.all(np.abs(np.asarray(one) - np.asarray(other)) <= tolerance)",
+    ),
+    SAME_SIZE: ("_close: np.asarray(one) - np.asarray(other) -> np.asarray(other) - np.asarray(one)",),
+    NEAR_TOLERANCE: (
+        "_close: np.abs(np.asarray(one) - np.asarray(other)) <= tolerance -> "
+        "np.abs(np.asarray(one) - np.asarray(other)) < tolerance",
+    ),
+}
+
+
 def is_rotation(R):
     return _close(R.T @ R, np.eye(3)) and np.linalg.det(R) > 0
 
@@ -359,6 +380,35 @@ IS_ROTATION = Exercise(
     answer="",
     reference=is_rotation,
     cases=is_rotation_cases,
+    equivalent=CLOSE
+    | {
+        NUMPYS_TRUTH: (
+            *CLOSE[NUMPYS_TRUTH],
+            "is_rotation: bool(orthonormal and right_handed) -> orthonormal and right_handed",
+        ),
+        MINUS_TRUE: ("is_rotation: orthonormal -> -orthonormal",),
+        SAME_SIZE: (
+            *CLOSE[SAME_SIZE],
+            "is_rotation: _close(R.T @ R, np.eye(3)) -> _close(np.eye(3), R.T @ R)",
+            "is_rotation: np.allclose(R.T @ R, np.eye(3), rtol=0, atol=1e-06) -> "
+            "np.allclose(np.eye(3), R.T @ R, rtol=0, atol=1e-06)",
+            "is_rotation: np.isclose(np.linalg.det(R), 1, rtol=0, atol=1e-06) -> "
+            "np.isclose(1, np.linalg.det(R), rtol=0, atol=1e-06)",
+        ),
+        "a matrix is orthogonal by its rows when it is by its columns": ("is_rotation: R.T @ R -> R @ R.T",),
+        "with orthonormal columns the determinant is 1 or -1": (
+            "is_rotation: np.linalg.det(R) > 0 -> np.linalg.det(R) >= 0",
+            "is_rotation: 0 -> 1 [2]",
+            "is_rotation: 1e-06 -> 1.000001 [2]",
+        ),
+        NEAR_TOLERANCE: (
+            *CLOSE[NEAR_TOLERANCE],
+            "is_rotation: np.allclose(R.T @ R, np.eye(3), rtol=0, atol=1e-06) -> np.allclose(R.T @ R, np.eye(3), atol=1e-06)",
+            "is_rotation: np.allclose(R.T @ R, np.eye(3), rtol=0, atol=1e-06) -> np.allclose(R.T @ R, np.eye(3), rtol=0)",
+            "is_rotation: np.isclose(np.linalg.det(R), 1, rtol=0, atol=1e-06) -> np.isclose(np.linalg.det(R), 1, atol=1e-06)",
+            "is_rotation: np.isclose(np.linalg.det(R), 1, rtol=0, atol=1e-06) -> np.isclose(np.linalg.det(R), 1, rtol=0)",
+        ),
+    },
     misconceptions=(
         *(
             Misconception(identifier, wrong, *says)
@@ -547,6 +597,35 @@ SAME_ROTATION = Exercise(
     answer="",
     reference=same_rotation,
     cases=same_rotation_cases,
+    equivalent=CLOSE
+    | {
+        NUMPYS_NUMBERS: (*CLOSE[NUMPYS_NUMBERS], "same_rotation: np.asarray(q2) -> q2"),
+        NUMPYS_TRUTH: (*CLOSE[NUMPYS_TRUTH], "same_rotation: bool(same or opposite) -> same or opposite"),
+        MINUS_TRUE: ("same_rotation: same -> -same", "same_rotation: opposite -> -opposite"),
+        SAME_SIZE: (
+            *CLOSE[SAME_SIZE],
+            "same_rotation: _close(q1, q2) -> _close(q2, q1)",
+            "same_rotation: _close(q1, -q2) -> _close(-q2, q1)",
+            "same_rotation: np.allclose(q1, q2, rtol=0, atol=1e-06) -> np.allclose(q2, q1, rtol=0, atol=1e-06)",
+            "same_rotation: np.allclose(q1, -np.asarray(q2), rtol=0, atol=1e-06) -> "
+            "np.allclose(-np.asarray(q2), q1, rtol=0, atol=1e-06)",
+        ),
+        NEAR_TOLERANCE: (
+            *CLOSE[NEAR_TOLERANCE],
+            "same_rotation: np.allclose(q1, q2, rtol=0, atol=1e-06) -> np.allclose(q1, q2, atol=1e-06)",
+            "same_rotation: np.allclose(q1, q2, rtol=0, atol=1e-06) -> np.allclose(q1, q2, rtol=0)",
+            "same_rotation: np.allclose(q1, -np.asarray(q2), rtol=0, atol=1e-06) -> "
+            "np.allclose(q1, -np.asarray(q2), atol=1e-06)",
+            "same_rotation: np.allclose(q1, -np.asarray(q2), rtol=0, atol=1e-06) -> "
+            "np.allclose(q1, -np.asarray(q2), rtol=0)",
+        ),
+        "q1 is compared with q2 and with -q2": (
+            "_close: np.asarray(one) - np.asarray(other) -> np.asarray(one) + np.asarray(other)",
+            "_close: np.asarray(one) - np.asarray(other) -> np.asarray(one) - -np.asarray(other)",
+            "_close: one -> -one",
+            "_close: other -> -other",
+        ),
+    },
     misconceptions=(
         Misconception(
             "sign-ignored",

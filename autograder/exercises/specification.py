@@ -4,20 +4,23 @@ One specification feeds everything: the public key that `check` reads in the not
 the diagnosis in feedback and report, and the tests that prove the grader.
 """
 
+import pickle
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from inspect import signature
 
 import numpy as np
 from transform_lab.judging import codec
-from transform_lab.judging.answers import same
+from transform_lab.judging.answers import is_right, parts_of
 from transform_lab.judging.comparison import frames_of
 from transform_lab.judging.diagnosis import error_of, open_parts_of
 from transform_lab.judging.kinds import KINDS
+from transform_lab.judging.reading import Unfit
 
 PUBLIC_SEED = 24  # the cases students see; any other seed draws hidden ones
 DIGITS = 12  # decimals kept of arguments and right answers: far below the tolerance of 1e-6
 DIGITS_WRONG = 8  # of wrong answers, which are most of the key
+PROTOCOL = 4  # of pickle; from 5 on, arrays do not own their numbers
 
 
 @dataclass(frozen=True)
@@ -54,6 +57,7 @@ class Exercise:
     misconceptions: see Misconception
     credit: what each part of the answer is worth alone; all parts together are worth 1
     weights: how much a family of cases counts; 1 for one that is not here
+    equivalent: mutants that are right, too, as {reason: (what was changed, …)}; see autograder.exercises.equivalent
     """
 
     name: str
@@ -64,6 +68,7 @@ class Exercise:
     misconceptions: tuple = ()
     credit: dict = field(default_factory=dict)
     weights: dict = field(default_factory=dict)
+    equivalent: dict = field(default_factory=dict)
 
     def __post_init__(self):
         if self.returns not in KINDS:
@@ -91,38 +96,70 @@ def key(exercise, seed):
     }
 
 
+class Arguments:
+    """A case's arguments (plain data), decoded once: a copy takes a fraction of the time that it takes to decode them."""
+
+    def __init__(self, args, kwargs):
+        self.plain = args, kwargs
+        decoded = [codec.decode(arg) for arg in args], {name: codec.decode(arg) for name, arg in kwargs.items()}
+        self._pickled = pickle.dumps(decoded, PROTOCOL)
+
+    def fresh(self):
+        """The positional and the keyword arguments, as objects of the caller's own: a function may change them."""
+        return pickle.loads(self._pickled)
+
+    def are(self, args, kwargs):
+        """Whether these arguments are still what they were."""
+        if pickle.dumps((args, kwargs), PROTOCOL) == self._pickled:
+            return True
+        return self.plain == (
+            [codec.encode(arg) for arg in args],
+            {name: codec.encode(arg) for name, arg in kwargs.items()},
+        )
+
+
 def _case(exercise, case):
     args = [_rounded(codec.encode(arg)) for arg in case.args]
     kwargs = {name: _rounded(codec.encode(arg)) for name, arg in case.kwargs.items()}
-    expected = _answer(exercise.reference, args, kwargs)
-    wrong = [_wrong_answer(misconception, args, kwargs) for misconception in exercise.misconceptions]
+    fresh = Arguments(args, kwargs).fresh
+    expected = _answer(exercise.reference, fresh)
+    right = _parts_of_the_right(exercise, case, expected)
+    given, named = fresh()
+    wrong = [_wrong_answer(m, m.varies(*given, **named), fresh) for m in exercise.misconceptions]
     return {
         "family": case.family,
         "args": args,
         "kwargs": kwargs,
         "expected": expected,
         "wrong": [
-            None if _right(exercise.returns, answer, expected) else _rounded(answer, DIGITS_WRONG) for answer in wrong
+            None if _right(exercise.returns, answer, right) else _rounded(answer, DIGITS_WRONG) for answer in wrong
         ],
     }
 
 
-def _wrong_answer(misconception, args, kwargs):
-    open_parts = misconception.varies(
-        *(codec.decode(arg) for arg in args), **{name: codec.decode(arg) for name, arg in kwargs.items()}
-    )
-    answer = {"any": list(open_parts)} if open_parts else _answer(misconception.wrong, args, kwargs)
+def _parts_of_the_right(exercise, case, expected):
+    where = f"{exercise.name}: the reference's answer to a case of {case.family!r}"
+    if error_of(expected):
+        raise ValueError(f"{where} is an error, {error_of(expected)}")
+    try:
+        return parts_of(exercise.returns, codec.decode(expected))
+    except Unfit as unfit:
+        raise ValueError(f"{where} is {unfit}") from unfit
+
+
+def _wrong_answer(misconception, open_parts, fresh):
+    answer = {"any": list(open_parts)} if open_parts else _answer(misconception.wrong, fresh)
     if answer is None:  # which would stand for a right answer in the key
         raise ValueError(f"{misconception.id}: to return None is a misconception of every exercise already")
     return answer
 
 
-def _right(returns, answer, expected):
-    return not error_of(answer) and not open_parts_of(answer) and same(returns, answer, expected)
+def _right(returns, answer, right):
+    return not error_of(answer) and not open_parts_of(answer) and is_right(returns, codec.decode(answer), right)
 
 
-def _answer(function, args, kwargs):
-    args, kwargs = [codec.decode(arg) for arg in args], {name: codec.decode(arg) for name, arg in kwargs.items()}
+def _answer(function, fresh):
+    args, kwargs = fresh()
     with np.errstate(all="ignore"):  # wrong implementations divide by zero; that is their point
         try:
             return _rounded(codec.encode(function(*args, **kwargs)))
@@ -134,7 +171,7 @@ def _rounded(plain, digits=DIGITS):
     if isinstance(plain, float):
         return round(plain, digits) + 0.0
     if isinstance(plain, list):
-        return [_rounded(item, digits) for item in plain]
+        return [round(item, digits) + 0.0 if type(item) is float else _rounded(item, digits) for item in plain]
     if isinstance(plain, dict):
         return {name: _rounded(item, digits) for name, item in plain.items()}
     return plain

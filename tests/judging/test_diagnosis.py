@@ -4,7 +4,6 @@ from itertools import product
 
 import numpy as np
 import pytest
-from mutants import mutants
 from scipy.spatial.transform import Rotation
 from solutions.wrong import WRONG
 from support import SEEDS, judged
@@ -15,6 +14,7 @@ from transform_lab.judging.kinds import KINDS, matrix_of
 from transform_lab.judging.verdict import Reply, examine
 
 from autograder.exercises import EXERCISES, PUBLIC_SEED
+from autograder.proving.mutants import mutants
 
 every_exercise = pytest.mark.parametrize("name", EXERCISES)
 MATRICES_AND_POSES = [name for name in EXERCISES if len(KINDS[EXERCISES[name].returns].parts) > 1]
@@ -38,9 +38,9 @@ def joined(name, parts):
 def test_the_name_does_not_hang_on_the_cases(name):
     """Whatever a wrong program is called on some cases, it is called on others."""
     with np.errstate(all="ignore"):
-        for what, mutant in mutants(EXERCISES[name].reference, "autograder.exercises"):
-            called = {judged(name, mutant, seed).misconceptions for seed in SEEDS[:3]}
-            assert len(called) == 1 or called <= {(), *((identifier,) for identifier in GENERAL)}, what
+        for mutant in mutants(EXERCISES[name].reference, "autograder.exercises"):
+            called = {judged(name, mutant.function, seed).misconceptions for seed in SEEDS[:3]}
+            assert len(called) == 1 or called <= {(), *((identifier,) for identifier in GENERAL)}, mutant.what
 
 
 @every_exercise

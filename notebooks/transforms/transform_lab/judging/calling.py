@@ -12,7 +12,11 @@ MOST_PRINTED = 200  # characters of what a function prints while it is checked
 
 def call(function, args, kwargs):
     """The Reply of `function` to plain arguments: fresh objects for each call, and what became of them after it."""
-    args, kwargs = [codec.decode(arg) for arg in args], {key: codec.decode(arg) for key, arg in kwargs.items()}
+    return reply(function, [codec.decode(arg) for arg in args], {key: codec.decode(arg) for key, arg in kwargs.items()})
+
+
+def reply(function, args, kwargs):
+    """The Reply of `function` to decoded arguments, which have to be fresh."""
     printed = io.StringIO()
     try:
         with redirect_stdout(printed):

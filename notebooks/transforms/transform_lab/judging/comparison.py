@@ -5,12 +5,10 @@ import re
 import numpy as np
 
 from .. import tft
-from ..validation import FARTHEST
-from ..viewing.drawing import round_number
-from ..viewing.shapes import X_RED, Y_GREEN, Z_BLUE
 from ..viewing.viewer import Viewer
 from . import codec
-from .answers import matrix_of, parts_of
+from .answers import parts_of
+from .kinds import KINDS
 
 
 def scene(verdict):
@@ -20,28 +18,21 @@ def scene(verdict):
     pose_in_b, object_pose (described in the frame that the answer is described in).
     """
     case = verdict.failing
-    if case is None or not verdict.wanted or verdict.answer is None:
+    if case is None or not verdict.wanted or verdict.answer is None or KINDS[verdict.returns].draw is None:
         return None
-    parent, name = _frames(verdict.wanted)
+    parent, name = frames_of(verdict.wanted)
     given = [codec.decode(plain) for plain in case["args"]]
-    answers = {"yours": verdict.answer}
+    answers = [(f"{name} (yours)", verdict.answer, False)]
     if given:  # the expected answer of a function without arguments is the solution
-        answers = {"expected": codec.decode(case["expected"]), **answers}
+        answers.insert(0, (f"{name} (expected)", codec.decode(case["expected"]), True))
     viewer = Viewer(parent)
     try:
         _add_given(viewer, verdict.parameters, given, name)
-        all_parts = {whose: parts_of(verdict.returns, answer) for whose, answer in answers.items()}
-        for whose, parts in all_parts.items():
-            label, ghost, answer = f"{name} ({whose})", whose == "expected", answers[whose]
-            if verdict.returns == "coordinates":
-                viewer.add_point(label, parts["coordinates"], ghost=ghost)
-            elif verdict.returns == "pose":
-                viewer.add_frame(label, answer, ghost=ghost)
-            else:
-                add_matrix(viewer, label, matrix_of(parts), ghost, _length(all_parts.values()))
+        drawn = [(label, parts_of(verdict.returns, answer), ghost) for label, answer, ghost in answers]
+        KINDS[verdict.returns].draw(viewer, drawn)
     except ValueError:  # nothing that could be drawn; the panel says what is wrong with it
         return None
-    if "expected" in answers:
+    if given:
         viewer.text = "pale: expected"
     return viewer.look(at=_close_together(viewer))
 
@@ -55,32 +46,12 @@ def _close_together(viewer):
     return list(places) if 0 < 3 * spread < distance else None
 
 
-def _frames(answer):
-    """("a", "b") of "a_T_b"; ("a", "p") of "p_in_a"."""
+def frames_of(answer):
+    """("a", "b") of "a_T_b" or "a_R_b"; ("a", "p") of "p_in_a"; None for another name, which tells no frame."""
     if found := re.fullmatch(r"(\w+)_in_(\w+)", answer):
         return found[2], found[1]
-    return re.fullmatch(r"(\w+?)_[TR]_(\w+)", answer).groups()
-
-
-def _length(answers):
-    """How long to draw the axes of matrices (given by their parts), in metres."""
-    sizes = [np.abs(parts["translation"]).max() for parts in answers if "translation" in parts]
-    return round_number(0.5 * max(sizes)) if sizes and 0 < max(sizes) < FARTHEST else 1.0
-
-
-def add_matrix(viewer, label, matrix, ghost=False, length=None):
-    """Add the frame of a 3x3 or 4x4 matrix to `viewer`; of one that is no rotation, its three columns as arrows."""
-    if matrix.shape == (3, 3):
-        matrix = np.block([[matrix, np.zeros((3, 1))], [np.zeros((1, 3)), 1]])
-    try:
-        viewer.add_frame(label, matrix, length=length, ghost=ghost)
-    except ValueError:
-        if matrix.shape != (4, 4) or not np.array_equal(matrix[3], [0, 0, 0, 1]):
-            raise
-        for letter, column, color in zip("xyz", matrix[:3, :3].T, (X_RED, Y_GREEN, Z_BLUE)):
-            viewer.add_arrow(
-                f"{letter} of {label}", matrix[:3, 3] + (length or 1) * column, tail=matrix[:3, 3], color=color
-            )
+    found = re.fullmatch(r"(\w+?)_[TR]_(\w+)", answer)
+    return found and found.groups()
 
 
 def _add_given(viewer, parameters, given, answer):

@@ -14,7 +14,9 @@ from typing import NamedTuple
 import numpy as np
 
 from . import codec
-from .answers import PARTS, TOLERANCE, Unfit, agree, made_of, parts_of, same
+from .answers import made_of, parts_of, same
+from .kinds import KINDS, TOLERANCE
+from .reading import Unfit
 
 # Failures that any exercise can have: what the answer shows, and what helps.
 GENERAL = {
@@ -154,7 +156,7 @@ def _fit(index, exercise, replies, outcomes):
                 return 0
         elif open_parts := open_parts_of(wrong):
             open_cases, wrong_there = open_cases + 1, wrong_there + (not outcome.answered)
-            if not _broke_down(outcome) and not set(PARTS[exercise["returns"]]) - open_parts <= outcome.parts:
+            if not _broke_down(outcome) and not set(KINDS[exercise["returns"]].parts) - open_parts <= outcome.parts:
                 return 0
         else:
             differs = True
@@ -215,7 +217,7 @@ def _part_by_part(exercise, outcomes):
 
     There is one when exactly one set of misconceptions, no two touching the same part, explains all that is wrong.
     """
-    parts = PARTS[exercise["returns"]]
+    parts = KINDS[exercise["returns"]].parts
     wrong = {part for part in parts if any(part not in outcome.parts for outcome in outcomes)}
     explained = {touched: _one_of(found) for touched, found in _partial_explanations(exercise, outcomes).items()}
     sets = [
@@ -231,29 +233,29 @@ def _part_by_part(exercise, outcomes):
 
 def _partial_explanations(exercise, outcomes):
     """{parts that they touch: [misconceptions that explain the answers in these parts]}"""
-    parts, found, loosely = PARTS[exercise["returns"]], {}, {}
+    parts, found, loosely = KINDS[exercise["returns"]].parts, {}, {}
     expected = [parts_of(exercise["returns"], codec.decode(case["expected"])) for case in exercise["cases"]]
     for index, misconception in enumerate(exercise["misconceptions"]):
         wrong = _parts_of_misconception(index, exercise, expected)
         touched = frozenset(
-            part
+            name
             for answer, right in zip(wrong, expected)
-            for part in parts
-            if answer[part] is None or not agree(part, answer[part], right[part])
+            for name, part in parts.items()
+            if answer[name] is None or not part.agree(answer[name], right[name])
         )
         if touched and all(
-            answer[part] is None or agree(part, outcome.got[part], answer[part])
+            answer[name] is None or parts[name].agree(outcome.got[name], answer[name])
             for outcome, answer in zip(outcomes, wrong)
-            for part in touched
+            for name in touched
         ):
             exact = all(part is not None for answer in wrong for part in answer.values())
             (found if exact else loosely).setdefault(touched, []).append(misconception)
-    for part in parts:
-        pairs = [(outcome.got[part], right[part]) for outcome, right in zip(outcomes, expected)]
+    for name, part in parts.items():
+        pairs = [(outcome.got[name], right[name]) for outcome, right in zip(outcomes, expected)]
         for identifier, fits in (("not-normalised", _not_normalised), ("rounded", _rounded)):
-            if any(part not in outcome.parts for outcome in outcomes) and fits(part, pairs):
+            if any(name not in outcome.parts for outcome in outcomes) and fits(part, pairs):
                 says, hint = GENERAL[identifier]
-                found.setdefault(frozenset([part]), []).append({"id": identifier, "says": says, "hint": hint})
+                found.setdefault(frozenset([name]), []).append({"id": identifier, "says": says, "hint": hint})
     return loosely | found
 
 
@@ -279,15 +281,15 @@ def _parts_of_misconception(index, exercise, expected):
 
 def _not_normalised(part, pairs):
     """Whether all these quaternions are right but for their length."""
-    if part != "orientation":
+    if not part.quaternion:
         return False
     lengths = [np.linalg.norm(got) for got, _ in pairs]
-    return all(length > TOLERANCE and agree(part, got / length, right) for length, (got, right) in zip(lengths, pairs))
+    return all(length > TOLERANCE and part.agree(got / length, right) for length, (got, right) in zip(lengths, pairs))
 
 
 def _rounded(part, pairs):
     """Whether all these values are the right ones, rounded to some number of decimals."""
-    signs = (1, -1) if part == "orientation" else (1,)  # q and -q are the same orientation
+    signs = (1, -1) if part.quaternion else (1,)  # q and -q are the same orientation
     return any(
         all(
             np.abs(got - step * np.round(got / step)).max() < 1e-9

@@ -7,10 +7,11 @@ import re
 from html import escape
 from itertools import zip_longest
 
-import numpy as np
-
 from . import codec
-from .answers import Unfit, agree, kind_of, matrix_of, parts_of
+from .answers import parts_of
+from .kinds import KINDS
+from .lines import labelled
+from .reading import Unfit
 
 COLOURS = {"right": "#1b7837", "wrong": "#d9690f", "waiting": "#888888"}  # of bar and mark, on white and on black
 
@@ -107,113 +108,23 @@ def _example(verdict, numbers):
     if names and names[-1].startswith("*"):
         names = [f"{names[-1][1:]}[{index}]" for index in range(len(case["args"]))]
     given = {name: codec.decode(plain) for name, plain in (*zip(names, case["args"]), *case["kwargs"].items())}
-    yours = _labelled("yours", verdict.answer) if verdict.answer is not None else []
+    yours = labelled("yours", verdict.answer) if verdict.answer is not None else []
     if verdict.error and verdict.error not in verdict.says:
         yours = [f"  yours  {verdict.error}"]
     if not given:  # the expected answer of a function without arguments is the solution
         return yours
     lines = [f"For example, {case['family']}:"]
     for name, value in given.items():
-        lines += _labelled(name, value)
+        lines += labelled(name, value)
     expected = codec.decode(case["expected"])
     try:
         parts = parts_of(verdict.returns, verdict.answer), parts_of(verdict.returns, expected)
     except Unfit:
-        return lines + _labelled("expected", expected) + yours
+        return lines + labelled("expected", expected) + yours
     return lines + _compared(verdict.returns, *parts)
 
 
 def _compared(returns, got, expected):
     """The expected answer against the student's, part by part, with how far each is off."""
-    off = {part: _off(part, got[part], right) for part, right in expected.items()}
-    if returns == "truth":
-        return [f"  {who:10}{bool(value['answer'])}" for who, value in (("expected", expected), ("yours", got))]
-    if "rotation" in expected:
-        left, right = _in_columns(matrix_of(expected), matrix_of(got))
-        indent = len(left[0]) + 4
-        lines = [f"  {'expected':{indent}}yours", *(f"  {one:{indent}}{other}" for one, other in zip(left, right))]
-        return [*lines, *(f"  {part}: {what}" for part, what in off.items())]
-    width = max(len(part) for part in expected) + 2 if len(expected) > 1 else 0
-    lines = []
-    for part, right in expected.items():
-        lines.append(f"  {part if width else '':{width}}expected  {_row(right)}")
-        lines.append(f"  {'':{width}}yours     {_row(got[part])}   {off[part]}")
-    return lines
-
-
-def _off(part, got, expected):
-    """How far one part is off, in words: metres for a place, degrees for a turn."""
-    if agree(part, got, expected):
-        return "right"
-    if part in ("position", "translation", "coordinates"):
-        return f"off by {np.linalg.norm(got - expected):.3g} m"
-    if part == "rotation":
-        if np.abs(got.T @ got - np.eye(3)).max() > 1e-3:
-            return "not a rotation: its columns are not all of length 1 and at right angles"
-        if np.linalg.det(got) < 0:
-            return "a mirror image, not a rotation: the axes are left-handed"
-        return f"off by {_degrees('from_matrix', got, expected)}"
-    if part == "orientation":
-        largest = np.abs(got).max()
-        if largest < 1e-9:
-            return "no orientation: all four numbers are 0"
-        length, turn = np.linalg.norm(got), _degrees("from_quat", got / largest, expected)
-        return f"off by {turn}" if abs(length - 1) < 1e-3 else f"off by {turn}, and of length {length:.3g}"
-    return "wrong"
-
-
-def _degrees(form, got, expected):
-    from scipy.spatial.transform import Rotation  # only now: it takes long to import
-
-    one, other = (getattr(Rotation, form)(value) for value in (got, expected))
-    return f"{np.degrees((one.inv() * other).magnitude()):.3g} degrees"
-
-
-def _labelled(label, value):
-    """Lines that show a value of any kind under its name."""
-    if hasattr(value, "position") and hasattr(value, "orientation"):
-        fields = {name: getattr(value, name) for name in ("position", "orientation")}
-        return [f"  {label}", *(f"    {name:13}{_field(field)}" for name, field in fields.items())]
-    if isinstance(value, (list, np.ndarray)):
-        try:
-            array = np.array(value, dtype=float)
-        except (TypeError, ValueError):
-            return [f"  {label}  {str(value)[:200]}"]
-        if not 0 < array.size <= 16:
-            return [f"  {label}  {kind_of(array)}"]
-        if array.ndim == 2:
-            return [f"  {label}", *(f"    {row}" for row in _in_columns(array)[0])]
-        return [f"  {label}  {_row(array)}" if array.ndim == 1 else f"  {label}  {kind_of(array)}"]
-    if isinstance(value, codec.Other):
-        return [f"  {label}  an object of type {value.type_name}"]
-    return [f"  {label}  {_short(value)}"]
-
-
-def _field(value):
-    """A field of a Pose; what is no message is said to be what it is."""
-    return _row(value) if hasattr(value, "x") else f"{kind_of(value)}: {_row(value)}"
-
-
-def _in_columns(*matrices):
-    """For each matrix the lines that show its rows, all columns of the same width."""
-    cells = [[[_short(number) for number in row] for row in matrix] for matrix in matrices]
-    width = max(len(cell) for rows in cells for row in rows for cell in row)
-    return [["  ".join(f"{cell:>{width}}" for cell in row) for row in rows] for rows in cells]
-
-
-def _row(value):
-    """A vector, a quaternion or a message's fields in one line, each number with its letter where it has one."""
-    if isinstance(value, np.ndarray):
-        value = value.reshape(-1).tolist()
-    elif hasattr(value, "x"):
-        value = [getattr(value, letter) for letter in "xyzw" if hasattr(value, letter)]
-    if not isinstance(value, list):
-        return str(value)
-    letters = "xyzw" if len(value) in (3, 4) else [""] * len(value)
-    return "   ".join(f"{letter} {_short(number)}".strip() for letter, number in zip(letters, value))
-
-
-def _short(number):
-    if isinstance(number, (float, np.floating)):
-        return f"{round(float(number), 4) + 0.0:g}"
-    return repr(number) if isinstance(number, str) else str(number)
+    kind = KINDS[returns]
+    return kind.show(got, expected, {name: part.off(got[name], expected[name]) for name, part in kind.parts.items()})

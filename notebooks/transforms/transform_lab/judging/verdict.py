@@ -6,7 +6,7 @@ called in another process), so a student and an instructor never see two opinion
 An exercise, as `examine` takes it, is a dictionary of plain data:
 
 - `parameters`: the names of the function's parameters, a star before one that takes any number of arguments
-- `returns`: the kind of answer, one of transform_lab.judging.answers.PARTS; `answer`: its name, such as "b_T_a"
+- `returns`: the kind of answer, one of transform_lab.judging.kinds.KINDS; `answer`: its name, such as "b_T_a"
 - `credit`: {part of the answer: what that part alone is worth}, as shares of the points; all parts are worth 1
 - `weights`: {family of cases: how much it counts}
 - `misconceptions`: [{"id", "says", "hint"}, …]
@@ -18,8 +18,11 @@ An exercise, as `examine` takes it, is a dictionary of plain data:
 from dataclasses import dataclass, field
 
 from . import codec
-from .answers import PARTS, Unfit, agree, parts_of
+from .answers import parts_of
 from .diagnosis import constant, diagnose
+from .kinds import KINDS
+from .reading import Unfit
+from .status import refuse_unknown
 
 LOOP = "Look for a loop that never ends, or a function that calls itself for ever."
 
@@ -54,7 +57,7 @@ class Outcome:
 class Verdict:
     """What is known about one exercise of one student.
 
-    status: "graded", "error", "timeout", "killed", "missing" or "unreadable" (see the design's verdicts.csv)
+    status: one of transform_lab.judging.status.STATUSES
     credit: from 0 to 1; 1 only when every case is right
     misconceptions: ids; more than one when the answer has several mistakes at once
     """
@@ -75,6 +78,9 @@ class Verdict:
     answer: object = None  # the student's answer to it, decoded
     error: str = ""  # or the error that was raised instead
 
+    def __post_init__(self):
+        refuse_unknown(self.status)
+
     @property
     def right(self):
         return self.credit == 1.0
@@ -92,8 +98,9 @@ def examine(name, exercise, call):
     outcomes = [compare(returns, case, reply) for case, reply in zip(cases, replies)]
     verdict = Verdict(
         name,
+        "error" if all(reply.outcome == "raised" for reply in replies) else "graded",
         credit=_credit(exercise, outcomes),
-        parts={part: sum(part in outcome.parts for outcome in outcomes) for part in PARTS[returns]},
+        parts={part: sum(part in outcome.parts for outcome in outcomes) for part in KINDS[returns].parts},
         cases=len(cases),
         returns=returns,
         wanted=exercise["answer"],
@@ -101,8 +108,6 @@ def examine(name, exercise, call):
     )
     if all(outcome.right for outcome in outcomes):
         return verdict
-    if all(reply.outcome == "raised" for reply in replies):
-        verdict.status = "error"
     if constant(replies):
         verdict.credit = 0.0
     verdict.misconceptions, verdict.says, verdict.hint = diagnose(exercise, replies, outcomes)
@@ -138,8 +143,9 @@ def compare(returns, case, reply):
         got = parts_of(returns, codec.decode(reply.value))
     except Unfit as unfit:
         return Outcome(problem=(unfit.misconception, str(unfit)), mutated=mutated)
-    good = frozenset(part for part in PARTS[returns] if agree(part, got[part], expected[part]))
-    return Outcome(good, len(good) == len(PARTS[returns]), got, mutated=mutated)
+    parts = KINDS[returns].parts
+    good = frozenset(name for name, part in parts.items() if part.agree(got[name], expected[name]))
+    return Outcome(good, len(good) == len(parts), got, mutated=mutated)
 
 
 def _credit(exercise, outcomes):

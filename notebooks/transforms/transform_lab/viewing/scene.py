@@ -9,7 +9,7 @@ import numpy as np
 from .. import tft
 from ..messages import Marker
 from ..validation import FARTHEST, NEAREST, numbers, rigid_transform, row_text, within_reach
-from .shapes import BROWN, ORANGE, PURPLE, STEEL, Node, draw_marker, marker_type, rgba, xyz
+from .shapes import BROWN, ORANGE, PURPLE, STEEL, X_RED, Y_GREEN, Z_BLUE, Node, draw_marker, marker_type, rgba, xyz
 
 
 @dataclass(frozen=True, eq=False)
@@ -279,6 +279,21 @@ class Scene:
             matrix = rigid_transform(pose, f"{what}: the transform")
         within_reach(matrix[:3, 3], f"{what}: the translation")
         return frame, matrix
+
+
+def add_matrix(scene, label, matrix, ghost=False, length=None):
+    """Add the frame of a 3x3 or 4x4 matrix to `scene`; of one that is no rotation, its three columns as arrows."""
+    if matrix.shape == (3, 3):
+        matrix = np.block([[matrix, np.zeros((3, 1))], [np.zeros((1, 3)), 1]])
+    try:
+        scene.add_frame(label, matrix, length=length, ghost=ghost)
+    except ValueError:
+        if matrix.shape != (4, 4) or not np.array_equal(matrix[3], [0, 0, 0, 1]):
+            raise
+        for letter, column, color in zip("xyz", matrix[:3, :3].T, (X_RED, Y_GREEN, Z_BLUE)):
+            scene.add_arrow(
+                f"{letter} of {label}", matrix[:3, 3] + (length or 1) * column, tail=matrix[:3, 3], color=color
+            )
 
 
 def _name(name, what):

@@ -25,6 +25,15 @@ def same(returns, one, other):
     return made_of(returns, first, other)
 
 
+def is_right(returns, answer, expected):
+    """Whether `answer` (decoded) agrees with the right one, given as its parts."""
+    try:
+        got = parts_of(returns, answer)
+    except Unfit:
+        return False
+    return all(part.agree(got[name], expected[name]) for name, part in KINDS[returns].parts.items())
+
+
 def made_of(returns, parts, answer):
     """Whether `answer` (decoded) has just these parts."""
     try:

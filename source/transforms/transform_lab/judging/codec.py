@@ -41,6 +41,8 @@ class NotPlain(ValueError):
 
 def encode(value, depth=0):
     """Plain data for `value`, of bounded size; what has no plain form becomes `{"other": type name}`."""
+    if type(value) is float:  # most of all there is
+        return _number(value)
     if value is None or isinstance(value, (bool, np.bool_)):
         return None if value is None else bool(value)
     if isinstance(value, (int, np.integer)):
@@ -53,16 +55,24 @@ def encode(value, depth=0):
         return _array(value)
     if depth >= DEEPEST:
         return _other(value)
-    for name, fields in MESSAGES.items():
-        if all(hasattr(value, field) for field in fields):
-            return {
-                "message": name,
-                "fields": {field: encode(getattr(value, field), depth + 1) for field in fields},
-            }
+    if (name := _message(value)) is not None:
+        fields = {field: encode(getattr(value, field), depth + 1) for field in MESSAGES[name]}
+        return {"message": name, "fields": fields}
     if isinstance(value, (list, tuple)) and len(value) <= LONGEST_LIST:
         plain = [encode(item, depth + 1) for item in value]
         return plain if depth or _items(plain) <= LARGEST_ARRAY else _other(value)
     return _other(value)
+
+
+def _message(value):
+    """The name of the message that has the fields of `value`, or None."""
+    for name, fields in MESSAGES.items():
+        for field in fields:
+            if not hasattr(value, field):
+                break
+        else:
+            return name
+    return None
 
 
 def decode(plain, depth=0):
@@ -141,7 +151,9 @@ def _array(value):
     numbers = np.asarray(value).ravel()
     if numbers.dtype.kind in "iu" and np.any(np.abs(numbers.astype(np.float64)) > LARGEST_INTEGER):
         return {"other": "array of integers out of range"}
-    flat = [encode(item) for item in numbers.tolist()]
+    flat = numbers.tolist()
+    if numbers.dtype not in (np.float64, np.float32) or not np.isfinite(numbers).all():
+        flat = [encode(item) for item in flat]
     return {"array": flat, "shape": list(value.shape)}
 
 
@@ -152,7 +164,7 @@ def _decode_array(flat, shape):
         raise NotPlain("an array with an impossible shape")
     if len(flat) > LARGEST_ARRAY or math.prod(shape) != len(flat):
         raise NotPlain("an array too large, or not of its shape")
-    numbers = [decode(item, DEEPEST) for item in flat]
+    numbers = [item if type(item) is float else decode(item, DEEPEST) for item in flat]
     if not all(isinstance(number, (bool, int, float)) for number in numbers):
         raise NotPlain("an array of something else than numbers")
     truth = len(numbers) > 0 and all(isinstance(number, bool) for number in numbers)

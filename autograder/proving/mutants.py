@@ -6,8 +6,11 @@ there a wrong program that it takes for right?
 
 import ast
 import inspect
+import linecache
 import textwrap
 from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass
 
 AXES = {"x": "y", "y": "z", "z": "x", "w": "x"}
 SWAPPED = {
@@ -17,24 +20,38 @@ SWAPPED = {
 }  # fmt: skip
 
 
+@dataclass(frozen=True)
+class Mutant:
+    """A function with one thing changed: what was changed, and the line of the source that it was changed in."""
+
+    what: str  # "transform_point: a_T_b @ p -> p @ a_T_b"; the same change in a second place is told by " [2]"
+    function: Callable
+    file: str
+    line: int
+    source: str
+
+
 def mutants(function, package=None):
-    """[(what was changed, the changed function)]; the same change in a second place is told by " [2]".
+    """The Mutants of a function.
 
     Functions of `package` (the beginning of a module's name) that it calls are part of it, and mutated like it.
     """
     found, times = [], Counter()
-    for what, mutant in _mutants(function, package):
+    for what, mutant, code, line in _mutants(function, package):
         times[what] += 1
-        found.append((what if times[what] == 1 else f"{what} [{times[what]}]", mutant))
+        text = linecache.getline(code.co_filename, line).strip()
+        told = what if times[what] == 1 else f"{what} [{times[what]}]"
+        found.append(Mutant(told, mutant, code.co_filename, line, text))
     return found
 
 
 def _mutants(function, package):
+    """(what was changed, the changed function, the code it stands in, the line) for each of them."""
     functions = _with_those_it_calls(function, package)
     body = [ast.parse(textwrap.dedent(inspect.getsource(each))).body[0] for each in functions]
     namespace = {name: value for each in reversed(functions) for name, value in each.__globals__.items()}
     tree = ast.Module(body=body, type_ignores=[])
-    for definition in body:
+    for definition, code in zip(body, (each.__code__ for each in functions)):
         if ast.get_docstring(definition) is not None:
             del definition.body[0]
         for holder, index, node in _places(definition):
@@ -44,19 +61,19 @@ def _mutants(function, package):
                     continue
                 holder[index] = changed
                 try:
-                    yield f"{definition.name}: {before} -> {after}", _made(tree, namespace, function.__name__)
+                    made = _made(tree, namespace, function.__name__)
                 finally:
                     holder[index] = node
+                yield f"{definition.name}: {before} -> {after}", made, code, code.co_firstlineno + node.lineno - 1
         for statements in _blocks(definition):
             for index in range(len(statements)) if len(statements) > 1 else ():
                 dropped = statements.pop(index)
                 try:
-                    yield (
-                        f"{definition.name}: without {ast.unparse(dropped)}",
-                        _made(tree, namespace, function.__name__),
-                    )
+                    made = _made(tree, namespace, function.__name__)
                 finally:
                     statements.insert(index, dropped)
+                what = f"{definition.name}: without {ast.unparse(dropped)}"
+                yield what, made, code, code.co_firstlineno + dropped.lineno - 1
 
 
 def _with_those_it_calls(function, package):

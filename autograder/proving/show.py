@@ -1,0 +1,139 @@
+"""What `prove` prints: a table of the exercises, then of one exercise's misconceptions, and what is open with what to do."""
+
+import os
+
+from rich.table import Column, Table
+from rich.text import Text
+
+from ..exercises import PUBLIC_SEED, key
+from .adequacy import misnamed
+from .search import code_of, quoted
+
+NO_CASE = "No case found that tells it apart: perhaps it is {}."
+
+
+def summary(proofs, seeds):
+    """The Table with a row for each exercise."""
+    table = Table(
+        "exercise", "misconceptions", "named", "mutants", "equivalent", "right", "wrong", "open",
+        box=None, pad_edge=False, title=f"caught, named and accepted on the cases of all {seeds} seeds", title_justify="left",
+    )  # fmt: skip
+    for column in table.columns:
+        column.no_wrap = True
+    for proof in proofs:
+        misconceptions = proof.of("misconception")
+        table.add_row(
+            proof.exercise.name,
+            _share(misconceptions),
+            f"{len(misconceptions) - len(proof.misnamed)} of {len(misconceptions)}",
+            *(_share(proof.of(kind)) for kind in ("mutant", "equivalent", "right", "wrong")),
+            str(proof.open or ""),
+        )
+    return table
+
+
+def _share(found):
+    good = sum(not (what.refused if each.right else what.accepted) for each, what in found)
+    return f"{good} of {len(found)}" if found else "none"
+
+
+def misconceptions(proof):
+    """The Table of an exercise's misconceptions: by which families of cases each is caught, and what it is called."""
+    table = Table(Column("misconception", no_wrap=True), "caught by", "called", box=None, pad_edge=False)
+    public = key(proof.exercise, PUBLIC_SEED)
+    for number, (each, what) in enumerate(proof.of("misconception")):
+        families = dict.fromkeys(case["family"] for case in public["cases"] if case["wrong"][number] is not None)
+        caught = "all families" if len(families) == len(public["weights"]) else "; ".join(families) or "nothing"
+        table.add_row(
+            Text(each.label), Text(caught), Text(_called(what) if misnamed(each, what) else "by its own name")
+        )
+    return table
+
+
+def _called(found):
+    return ", or ".join("; ".join(called) or "nothing" for called in found.called)
+
+
+def open_points(proof, root):
+    """What an author has to look at, as lines to print."""
+    name = proof.exercise.name
+    if not proof.solved:
+        yield _point(f"{name}: no notebook in source/ has a cell {name}-solution, so its mutants are not tried.")
+    yield from _slipping(proof, root)
+    for each, what in proof.refused:
+        yield from _refused(proof, each, what, root)
+    for each, what in proof.misnamed:
+        yield _point(f"{name}: the misconception {each.label} is called {_called(what)}, on some seeds at least.")
+    for what in proof.made_no_longer:
+        yield _point(f"{name}: declared as equivalent, and made no longer; take it out of the specification:")
+        yield _detail(f"changed: {what}")
+
+
+def _slipping(proof, root):
+    """What slips through; mutants of one line that the same case would catch are said together."""
+    alike = {}
+    for each, what in proof.slipping:
+        line = (each.mutant.file, each.mutant.line) if each.mutant else each.label
+        alike.setdefault((line, proof.cases[each.label]), []).append((each, what))
+    for (_, case), group in alike.items():
+        each, seeds = group[0][0], _seeds({seed for _, what in group for seed in what.accepted}, proof)
+        if each.kind == "mutant":
+            yield _point(f"{proof.exercise.name}: {_counted(len(group), 'mutant')} of a line, not caught on {seeds}.")
+            yield from _where([each for each, _ in group], root)
+        elif each.kind == "misconception":
+            yield _point(f"{proof.exercise.name}: the misconception {each.label}, not caught on {seeds}.")
+        else:
+            yield _point(f"{proof.exercise.name}: the wrong solution {each.label}, accepted on {seeds}.")
+        yield from _advice([each for each, _ in group], case)
+
+
+def _advice(group, case):
+    if case is not None:
+        yield _detail("A case that would catch it:" if len(group) == 1 else "A case that would catch each of them:")
+        yield _detail(case, 4)
+    elif group[0].kind == "mutant":
+        yield _detail(f"{NO_CASE.format('equivalent')} If so, declare it in the specification's field `equivalent`:")
+        yield _detail(f'"the reason": ({"".join(f"{quoted(each.label)}, " for each in group).strip()}),', 4)
+    else:
+        yield _detail(NO_CASE.format("right, whatever the exercise may ask"))
+
+
+def _refused(proof, each, what, root):
+    seed, number = next(iter(what.refused.items()))
+    if each.kind == "equivalent":
+        said, advice = "declared as equivalent, and caught", "Take it out of the specification. This case catches it:"
+    else:
+        said, advice = f"right ({each.label}), and refused", "By this case, for one:"
+    yield _point(f"{proof.exercise.name}: {said} on {_seeds(what.refused, proof)}.")
+    yield from _where([each], root)
+    yield _detail(advice)
+    yield _detail(code_of(proof.exercise, seed, number), 4)
+
+
+def _seeds(some, proof):
+    return (
+        f"all {len(proof.seeds)} seeds" if len(some) == len(proof.seeds) else f"{len(some)} of {len(proof.seeds)} seeds"
+    )
+
+
+def _counted(number, what):
+    return f"a {what}" if number == 1 else f"{number} {what}s"
+
+
+def _where(group, root):
+    """The line that mutants were changed in, and what was changed."""
+    mutant = group[0].mutant
+    if mutant:
+        file = os.path.relpath(mutant.file, root) if os.path.isabs(mutant.file) else mutant.file
+        yield _detail(f"{file}, line {mutant.line}:")
+        yield _detail(mutant.source, 4)
+        for each in group:
+            yield _detail(f"changed: {each.label}")
+
+
+def _point(text):
+    return Text(f"\n{text}", style="bold")
+
+
+def _detail(text, indent=2):
+    return Text(" " * indent + text)
