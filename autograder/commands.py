@@ -105,7 +105,7 @@ def _parser():
         "--column",
         metavar="NAME",
         default=ASSIGNMENT,
-        help=f"the grading_run's name in the LMS (default: {ASSIGNMENT})",
+        help=f"the assignment's name in the LMS (default: {ASSIGNMENT})",
     )
     sub.add_argument("--output", type=Path, default=Path("-"), help="a file (default: print)")
     add("test", test, "run all tests; other options are passed on to pytest")
@@ -165,7 +165,7 @@ def package(options):
         path = folder / f"{ASSIGNMENT}-gradescope.zip"
         write(path, for_gradescope(here))
         console.print(
-            f"{path}: the autograder, for a programming grading_run on Gradescope (base image: Ubuntu 24.04 or newer). "
+            f"{path}: the autograder, for a programming assignment on Gradescope (base image: Ubuntu 24.04 or newer). "
             "It holds the solutions: keep it to yourself.",
             markup=False,
         )
@@ -230,6 +230,7 @@ def _grade(here, students, protected, seed=None, jobs=os.cpu_count(), force=Fals
     seed = new_seed() if seed is None else seed
     failed, fresh, counts = [], [], Counter()
     with here.one_grader_at_a_time(_busy), Writer(here) as writer:
+        writer.can_record()
         against = grading_run(here, seed, isolated=protected)
         with _progress() as progress:
             bar = progress.add_task("grading", total=len(students), counts="")
