@@ -30,7 +30,7 @@ class Course:
         if others:
             return (
                 f"The assignment's folder has to be called {ASSIGNMENT}, as the released one, those in "
-                f"submitted/STUDENT/, the zips and the gradebook's entry are. Rename it back: `mv source/{others[0]} source/{ASSIGNMENT}`. "
+                f"submitted/STUDENT/ and the gradebook's entry are. Rename it back: `mv source/{others[0]} source/{ASSIGNMENT}`. "
                 "Names that are yours to choose: the course's in nbgrader's exchange, c.CourseDirectory.course_id in "
                 "nbgrader_config.py, and the LMS's name for the points, `export --column`."
             )

@@ -44,7 +44,7 @@ def refuse_to_lose(gradebook, notebooks):
     whose = f"{len(students)} student{'s' if len(students) > 1 else ''}"
     lines = "\n".join(f"  {change}." for change in changes)
     raise CourseError(
-        f"The gradebook holds the work of {whose}, and nbgrader then lets no graded cell come or go:\n{lines}\n"
+        f"The gradebook holds the work of {whose}, and nbgrader then adds and removes no cells:\n{lines}\n"
         "Points may change at any time: an exercise that is not to count any more keeps its cells, and gets 0 points. "
         "The demo's class goes by `python3 -m autograder demo --remove`. Otherwise undo this change; or begin a new gradebook:\n"
         f"  1. Keep a copy of the old one: grades and comments that people gave ({_by_hand(gradebook)}) will be lost.\n"

@@ -71,7 +71,7 @@ class Student:
     def hand_in(self, released):
         """The text of the student's file, made from the course.Released notebook."""
         notebook = copy.deepcopy(released.notebook)
-        known = {*_imported(notebook), *released.points}  # an exercise's function is defined by the cell of that exercise
+        known = {*_imported(notebook), *released.points}  # the cell of an exercise defines its function
         for position, cell in reversed(list(enumerate(notebook.cells))):
             code = self.extra_cells.get(cell.metadata.get("nbgrader", {}).get("grade_id"))
             if code:

@@ -33,7 +33,7 @@ def notebooks(course):
             problems.append(str(error))
             continue
         found[notebook.name] = notebook
-        wrong = list(_cells(course, notebook)) or [*_names(notebook), *_headings(notebook), *_opening(notebook)]
+        wrong = list(_cells(course, notebook)) or [line for look in LOOKS for line in look(notebook)]
         problems += [f"{path.name}{says}" for says in wrong]
     if not (found or problems):
         problems.append("there is no notebook in it")
@@ -102,6 +102,20 @@ class _Heading:
     points: float | None
 
 
+def _uses(notebook):
+    """Whether the other code cells use the notebook's own exercises, and sum up this notebook."""
+    code = [(number, cell.source) for number, cell in enumerate(notebook.notebook.cells, 1) if cell.cell_type == "code"]
+    defined = set(re.findall(r"^\s*def (\w+)|^(\w+) *=", "\n".join(text for _, text in code), re.MULTILINE))
+    known = {*notebook.points, *(name for names in defined for name in names)}
+    for number, text in code:
+        for name in dict.fromkeys(re.findall(r"(?<![\w.])\w+\b", text)):
+            if name in EXERCISES and name not in known:
+                yield f", cell {number}: it uses {name}, which is no exercise of this notebook: change the cell, or take it out"
+        for name in re.findall(r"""sum_up\(["'](.*?)["']\)""", text):
+            if name != notebook.name:
+                yield f', cell {number}: it has to be sum_up("{notebook.name}"), the name of the notebook'
+
+
 def _headings(notebook):
     """Whether each graded cell has a heading above it that says its points, and each such heading a graded cell."""
     announced = None
@@ -147,6 +161,9 @@ def _opening(notebook):
     for said in map(float, OPENING.findall(first)):
         if said != most:
             yield f": its opening says {_said(said)}, its cells {_said(most)} in all"
+
+
+LOOKS = (_names, _uses, _headings, _opening)
 
 
 def _said(points):
