@@ -32,6 +32,8 @@ def run(arguments):
     if options.extra and options.command not in (lab, test):
         parser.error(f"unrecognized arguments: {' '.join(options.extra)}")
     try:
+        if options.command is not test:
+            course()  # where there is none, the commands' own imports would say so with a traceback
         return options.command(options)
     except CourseError as error:
         errors.print(str(error), markup=False)

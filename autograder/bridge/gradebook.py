@@ -21,7 +21,6 @@ from nbgrader.api import (
     SubmittedAssignment,
     SubmittedNotebook,
 )
-from nbgrader.coursedir import CourseDirectory
 from nbgrader.plugins import CsvExportPlugin
 from nbgrader.preprocessors import AssignLatePenalties
 from sqlalchemy import Engine, event, select, update
@@ -32,7 +31,7 @@ from ..files import replace
 from ..grading.marks import CellGrade, NotebookGrades
 from ..intake.submission import TIMESTAMP
 from . import registration
-from .nbgrader_api import settings
+from .nbgrader_api import db_url, settings
 
 PATIENCE = 60.0  # seconds to wait for a database that somebody else has locked
 
@@ -47,10 +46,10 @@ def _wait_for_locks(connection, _):
         connection.execute(f"PRAGMA busy_timeout = {int(PATIENCE * 1000)}")
 
 
-def opened(db_url):
-    """nbgrader's Gradebook, which makes a new one where there is none; raises CourseError when it cannot be read."""
+def opened(course):
+    """nbgrader's Gradebook of a course, made where there is none; raises CourseError when it cannot be read."""
     try:
-        return Gradebook(db_url)
+        return Gradebook(db_url(course))
     except DatabaseError as error:
         raise CourseError(
             f"The gradebook cannot be read ({error.orig}). Put a backup in its place; or move it away, and "
@@ -62,12 +61,11 @@ class Writer:
     """Records Graded submissions; a context manager that holds the gradebook open."""
 
     def __init__(self, course):
-        self.course, self.config = course, settings(course)
-        self.db_url = CourseDirectory(config=self.config).db_url
+        self.course, self.config, self.db_url = course, settings(course), db_url(course)
 
     def __enter__(self):
         released = self.course.notebooks  # raises CourseError when there are none, before a gradebook is made
-        self.gradebook = opened(self.db_url)
+        self.gradebook = opened(self.course)
         try:
             registration.follow(self.gradebook, released, self.config, self.db_url)
             self.stale = None

@@ -18,6 +18,11 @@ def settings(course):
     return PyFileConfigLoader("nbgrader_config.py", path=str(course.root)).load_config()
 
 
+def db_url(course):
+    """Where the gradebook is, as SQLAlchemy writes it: SQLite in the course's folder, or what nbgrader_config.py sets."""
+    return CourseDirectory(config=settings(course)).db_url
+
+
 def call(course, command, *arguments):
     """Run a method of nbgrader's API, such as "generate_feedback"; raises CourseError with the reason when it fails."""
     config = settings(course)

@@ -6,8 +6,6 @@ The page of all exercises, which instructors read, is made along with it.
 import json
 import shutil
 
-from nbgrader.coursedir import CourseDirectory
-
 from ..bridge import gradebook, nbgrader_api, registration
 from ..course import ASSIGNMENT, CourseError
 from ..exercises import EXERCISES, PUBLIC_SEED, key
@@ -50,7 +48,7 @@ def _json(plain):
 def release(course):
     """Make notebooks/ from source/ and record the assignment in the gradebook; the lines that say what changed."""
     notebooks = source.notebooks(course)
-    with gradebook.opened(CourseDirectory(config=nbgrader_api.settings(course)).db_url) as book:
+    with gradebook.opened(course) as book:
         registration.refuse_to_lose(book, notebooks)
     before, text = course.release_contents(), _key(notebooks)
     key_file = course.package / "key.json"
