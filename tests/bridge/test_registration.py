@@ -2,6 +2,7 @@
 
 import re
 import shutil
+from functools import cache
 
 import pytest
 from editing import Edited
@@ -12,6 +13,7 @@ from autograder.bridge.gradebook import Writer
 from autograder.course import Course, CourseError
 from autograder.grading.grade import Graded
 from autograder.grading.marks import Marks
+from autograder.handout import release as handout
 from autograder.handout import source
 from autograder.pages import report
 
@@ -60,49 +62,66 @@ CHANGES = {
 
 
 def registered(writer):
-    """{(notebook, graded cell): points} as the gradebook has them."""
-    notebooks = writer.gradebook.find_assignment("transforms").notebooks
-    return {(notebook.name, cell.name): cell.max_score for notebook in notebooks for cell in notebook.grade_cells}
+    """{(notebook, cell): its points or None, for each way in which nbgrader keeps it} of the gradebook."""
+    found = {}
+    for notebook in writer.gradebook.find_assignment("transforms").notebooks:
+        for cell in (*notebook.grade_cells, *notebook.solution_cells):
+            found.setdefault((notebook.name, cell.name), set()).add(getattr(cell, "max_score", None))
+    return found
 
 
 def asked(course):
     """The same of the released notebooks."""
     return {
-        (name, cell): points
+        (name, cell.metadata.nbgrader.grade_id): {
+            *([cell.metadata.nbgrader.points] if cell.metadata.nbgrader.grade else []),
+            *([None] if cell.metadata.nbgrader.solution else []),
+        }
         for name, released in course.notebooks.items()
-        for cell, points in {**released.points, **released.questions}.items()
+        for cell in released.cells.values()
     }
 
 
-def hand_in(course, student):
+@pytest.fixture(scope="module")
+def handed_in(released, tmp_path_factory):
+    """A course with one student's work in its gradebook; not to be changed by tests."""
+    root = tmp_path_factory.mktemp("course") / "handed_in"
+    shutil.copytree(released.root, root)
+    course = Course(root)
+    marks = {
+        name: Marks(dict.fromkeys(notebook.cells, 0.0), dict.fromkeys(notebook.cells))
+        for name, notebook in course.notebooks.items()
+    }
+    course.submitted("alice").mkdir(parents=True)
     with Writer(course) as writer:
-        given = {
-            name: Marks(dict.fromkeys(cells, 0.0), dict.fromkeys(cells))
-            for name, cells in {name: released.cells for name, released in course.notebooks.items()}.items()
-        }
-        notebooks = {name: released.text for name, released in course.notebooks.items()}
-        course.submitted(student).mkdir(parents=True)
-        writer.record(Graded(student, [], notebooks, given))
+        writer.record(Graded("alice", [], {name: of.text for name, of in course.notebooks.items()}, marks))
+    return course
+
+
+@pytest.fixture
+def taken(handed_in, tmp_path):
+    """Such a course of the test's own."""
+    shutil.copytree(handed_in.root, tmp_path / "taken")
+    return Course(tmp_path / "taken")
 
 
 @pytest.mark.parametrize("change", [*CHANGES, repriced], ids=lambda change: change.__name__)
-def test_a_gradebook_without_submissions_follows_the_notebooks(draft, change):
+def test_a_gradebook_without_submissions_follows_the_notebooks(course, change):
     """As after a colleague's release that came by `git pull`: nobody runs `release` here."""
-    with Writer(draft) as writer:
+    with Writer(course) as writer:
         before = registered(writer)
-        assert before == asked(draft)
-    change(draft.release)
-    changed = Course(draft.root)
+        assert before == asked(course)
+    change(course.release)
+    changed = Course(course.root)
     with Writer(changed) as writer:
         writer.can_record()
         assert registered(writer) == asked(changed) != before
 
 
 @pytest.mark.parametrize("change", CHANGES, ids=lambda change: change.__name__)
-def test_where_a_student_has_handed_in_a_change_of_cells_is_refused_in_words(draft, change):
-    hand_in(draft, "alice")
-    change(draft.release)
-    changed = Course(draft.root)
+def test_where_a_student_has_handed_in_a_change_of_cells_is_refused_in_words(taken, change):
+    change(taken.release)
+    changed = Course(taken.root)
     with Writer(changed) as writer:
         with pytest.raises(CourseError) as refused:
             writer.can_record()
@@ -115,24 +134,22 @@ def test_where_a_student_has_handed_in_a_change_of_cells_is_refused_in_words(dra
         assert registered(writer) == asked(changed)
 
 
-def test_release_refuses_before_it_touches_anything(draft):
-    hand_in(draft, "alice")
-    less(draft.source)
-    before = draft.release_contents(), (draft.package / "key.json").read_bytes()
-    code, said = run(draft, "release")
+def test_release_refuses_before_it_touches_anything(taken):
+    less(taken.source)
+    before = taken.release_contents(), (taken.package / "key.json").read_bytes()
+    code, said = run(taken, "release")
     assert code == 2 and "1_rotation.ipynb: is_rotation is no longer there." in said
     assert "db assignment remove transforms --force" in said and "(0 and 0 now)" in said
-    assert (draft.release_contents(), (draft.package / "key.json").read_bytes()) == before
+    assert (taken.release_contents(), (taken.package / "key.json").read_bytes()) == before
 
 
-def test_other_points_are_followed_and_grades_given_by_hand_stay(draft):
-    hand_in(draft, "alice")
-    with Writer(draft) as writer:
+def test_other_points_are_followed_and_grades_given_by_hand_stay(taken):
+    with Writer(taken) as writer:
         grade = writer.gradebook.find_grade("question-which-frame", "5_pre_grasp", "transforms", "alice")
         grade.manual_score = 1.5
         writer.gradebook.db.commit()
-    repriced(draft.release)
-    changed = Course(draft.root)
+    repriced(taken.release)
+    changed = Course(taken.root)
     with Writer(changed) as writer:
         writer.can_record()
         assert registered(writer) == asked(changed)
@@ -161,59 +178,87 @@ def endless(folder):
     ],
     ids=lambda value: getattr(value, "__name__", None),
 )
-def test_nbgraders_own_reason_is_told(draft, change, reason):
+def test_nbgraders_own_reason_is_told(taken, change, reason):
     """Its last words are "Please see the the above traceback"; the reason stands in its log."""
-    hand_in(draft, "alice")
-    change(draft.source)
+    change(taken.source)
     with pytest.raises(CourseError, match=reason):
-        nbgrader_api.call(draft, "generate_assignment", "transforms")
+        nbgrader_api.call(taken, "generate_assignment", "transforms")
 
 
-def test_a_changed_course_from_release_to_export_and_again(draft):
-    """Dropped and added before anybody hands in; then by the steps that the refusal gives; then other points."""
-    less(draft.source), more(draft.source)
-    code, said = run(draft, "release")
-    assert code == 0 and "changed: 1_rotation.ipynb" in said and "changed: transform_lab/key.json" in said
-    for student, folder in (("alice", draft.source), ("bob", draft.release)):
-        shutil.copytree(folder, draft.submitted(student))
-    code, said = run(draft, "grade", "--unsafe-no-sandbox")
+@pytest.fixture
+def same_public_cases(monkeypatch):
+    """Releases of one test compute the public cases and the page of all exercises, which stay the same, only once."""
+    monkeypatch.setattr(handout, "key", cache(handout.key))
+    monkeypatch.setattr(handout.exercises_page, "page", cache(handout.exercises_page.page))
+
+
+def with_solutions(course, student):
+    """Hand in the released notebooks, filled in as in source/."""
+    solutions = source.notebooks(course)
+    shutil.copytree(course.release, course.submitted(student))
+    for name in course.notebooks:
+        with Edited(course.submitted(student), name) as edited:
+            for cell in edited.notebook.cells:
+                nbgrader = cell.metadata.get("nbgrader", {})
+                if nbgrader.get("solution"):
+                    cell.source = solutions[name].cells[nbgrader.grade_id].source
+
+
+def graded(course):
+    """Grade all; what was printed."""
+    code, said = run(course, "grade", "--unsafe-no-sandbox")
     assert code == 0, said
-    exercises = [name for notebook in source.notebooks(draft).values() for name in notebook.points]
-    most = sum(sum(notebook.points.values()) for notebook in draft.notebooks.values())
-    in_all = most + sum(sum(notebook.questions.values()) for notebook in draft.notebooks.values())
-    assert "is_rotation" not in exercises
-    assert [row["exercise"] for row in verdicts(draft)] == exercises * 2
-    assert (sum(scores(draft, "alice").values()), sum(scores(draft, "bob").values())) == (most, 0)
-    page = (draft.feedback("alice") / "index.html").read_text()
-    assert "why?" in page and f"of {in_all:g} points so far" in page and "is_rotation" not in page
-    assert "why?" in (draft.reports / "index.html").read_text()
-    assert f"alice,{most},{in_all},yes" in run(draft, "export")[1]
+    return said
 
-    with Edited(draft.source, "4_inversion") as edited:
-        edited.add_question("later", 1)
-        edited.say_points(9)
-    code, said = run(draft, "release")
-    assert code == 2 and "the work of 2 students" in said and "4_inversion.ipynb: later is new." in said
-    steps = re.findall(r"`(nbgrader db[^`]*|python3 -m autograder (?:release|grade))`", said)
-    assert len(steps) == 3
-    for step in steps:
-        words = step.split()
-        if words[0] == "nbgrader":
-            assert nbgrader(draft, *words[1:]).returncode == 0
-        else:
-            code, said = run(draft, *words[3:], *(["--unsafe-no-sandbox"] if words[-1] == "grade" else []))
-            assert code == 0, said
-    assert f"alice,{most},{in_all + 1},yes" in run(draft, "export")[1]
-    assert marks(draft)["alice", "4_inversion", "later comment"] == "No response."
 
-    with Edited(draft.source, "2_homogeneous_transforms") as edited:
+def most(course):
+    """(points for exercises, points for all) of a course."""
+    notebooks = Course(course.root).notebooks.values()
+    exercises, questions = (sum(sum(getattr(n, of).values()) for n in notebooks) for of in ("points", "questions"))
+    return exercises, exercises + questions
+
+
+def test_a_changed_course_from_release_to_export_and_again(course, same_public_cases):
+    """An exercise dropped and a question added before anybody hands in; then other points; then one question more."""
+    less(course.source)
+    more(course.source)
+    assert {"changed: 1_rotation.ipynb", "changed: 3_chaining.ipynb"} < set(handout.release(course))
+    with_solutions(course, "alice")
+    shutil.copytree(course.release, course.submitted("bob"))
+    graded(course)
+    exercises, in_all = most(course)
+    names = [name for notebook in Course(course.root).notebooks.values() for name in notebook.points]
+    assert "is_rotation" not in names and [row["exercise"] for row in verdicts(course)] == names * 2
+    assert (sum(scores(course, "alice").values()), sum(scores(course, "bob").values())) == (exercises, 0)
+    page = (course.feedback("alice") / "index.html").read_text()
+    assert "why?" in page and f"{exercises:g} of {in_all:g} points so far" in page and "is_rotation" not in page
+    assert "why?" in (course.reports / "index.html").read_text()
+    assert f"alice,{exercises},{in_all},yes" in run(course, "export")[1]
+
+    with Edited(course.source, "2_homogeneous_transforms") as edited:
         edited.named("make_transform").metadata.nbgrader.points = 0
         edited.replace("`make_transform` (1 point)", "`make_transform` (0 points)")
         edited.named("transform_point").metadata.nbgrader.points = 4
         edited.replace("`transform_point` (2 points)", "`transform_point` (4 points)")
         edited.say_points(15)
-    assert run(draft, "release")[0] == 0
-    code, said = run(draft, "grade", "--unsafe-no-sandbox")
-    assert code == 0 and "2 graded" in said and "set back" not in said
-    assert (scores(draft, "alice")["make_transform"], scores(draft, "alice")["transform_point"]) == (0, 4)
-    assert f"alice,{most + 1},{in_all + 2},yes" in run(draft, "export")[1]
+    handout.release(course)
+    said = graded(course)
+    assert "2 graded" in said and "set back" not in said
+    assert (scores(course, "alice")["make_transform"], scores(course, "alice")["transform_point"]) == (0, 4)
+    assert most(course) == (exercises + 1, in_all + 1)
+    assert f"alice,{exercises + 1},{in_all + 1},yes" in run(course, "export")[1]
+
+    with Edited(course.source, "4_inversion") as edited:
+        edited.add_question("later", 1)
+        edited.say_points(9)
+    with pytest.raises(CourseError) as refused:
+        handout.release(course)
+    said = str(refused.value)
+    assert "the work of 2 students" in said and "4_inversion.ipynb: later is new." in said
+    removal, *others = re.findall(r"`(nbgrader db[^`]*|python3 -m autograder (?:release|grade))`", said)
+    assert others == ["python3 -m autograder release", "python3 -m autograder grade"]
+    assert nbgrader(course, *removal.split()[1:]).returncode == 0
+    assert "changed: 4_inversion.ipynb" in handout.release(course)
+    graded(course)
+    assert f"alice,{exercises + 1},{in_all + 2},yes" in run(course, "export")[1]
+    assert marks(course)["alice", "4_inversion", "later comment"] == "No response."
