@@ -7,7 +7,9 @@ the path here, once for every way into the grader.
 import sys
 from pathlib import Path
 
-_SOURCE = str(Path(__file__).resolve().parent.parent / "source" / "transforms")
+ASSIGNMENT = "transforms"  # as nbgrader calls it, and its folders in source/, notebooks/, submitted/STUDENT/, …
+
+_SOURCE = str(Path(__file__).resolve().parent.parent / "source" / ASSIGNMENT)
 if _SOURCE not in sys.path:
     sys.path.insert(0, _SOURCE)
 

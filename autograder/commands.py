@@ -51,6 +51,8 @@ def run(arguments):
     if options.extra and options.command not in (lab, test):
         parser.error(f"unrecognized arguments: {' '.join(options.extra)}")
     try:
+        if options.command is not test:
+            course()  # where there is none, the commands' own imports would say so with a traceback
         return options.command(options)
     except CourseError as error:
         errors.print(str(error), markup=False)
@@ -131,7 +133,7 @@ def _parser():
         "--column",
         metavar="NAME",
         default=ASSIGNMENT,
-        help=f"the grading_run's name in the LMS (default: {ASSIGNMENT})",
+        help=f"the assignment's name in the LMS (default: {ASSIGNMENT})",
     )
     sub.add_argument("--output", type=Path, default=Path("-"), help="a file (default: print)")
     sub = add("test", test, "run the quick tests; other options are passed on to pytest, and choose among all tests")
@@ -192,7 +194,7 @@ def package(options):
         path = folder / f"{ASSIGNMENT}-gradescope.zip"
         write(path, for_gradescope(here))
         console.print(
-            f"{path}: the autograder, for a programming grading_run on Gradescope (base image: Ubuntu 24.04 or newer). "
+            f"{path}: the autograder, for a programming assignment on Gradescope (base image: Ubuntu 24.04 or newer). "
             "It holds the solutions: keep it to yourself.",
             markup=False,
         )
@@ -288,6 +290,7 @@ def _grade(here, students, protected, seed=None, jobs=os.cpu_count(), force=Fals
     seed = new_seed() if seed is None else seed
     failed, fresh, counts = [], [], Counter()
     with here.one_grader_at_a_time(_busy), Writer(here) as writer:
+        writer.can_record()
         against = grading_run(here, seed, isolated=protected)
         with _progress() as progress:
             bar = progress.add_task("grading", total=len(students), counts="")

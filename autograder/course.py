@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from .released import Released
-
-ASSIGNMENT = "transforms"
+from . import ASSIGNMENT
+from .released import NotANotebook, read
 
 
 class CourseError(Exception):
@@ -23,10 +22,22 @@ class Course:
 
     def __post_init__(self):
         if not self.source.is_dir():
-            raise CourseError(
-                f"{self.root} is no course folder: there is no source/{ASSIGNMENT} in it. "
-                "Change to the folder that holds nbgrader_config.py and run the command again."
+            raise CourseError(self._no_source())
+
+    def _no_source(self):
+        """Why there is no source/transforms, as far as that can be seen."""
+        others = sorted(path.parent.name for path in self.root.glob("source/*/transform_lab"))
+        if others:
+            return (
+                f"The assignment's folder has to be called {ASSIGNMENT}, as the released one, those in "
+                f"submitted/STUDENT/ and the gradebook's entry are. Rename it back: `mv source/{others[0]} source/{ASSIGNMENT}`. "
+                "Names that are yours to choose: the course's in nbgrader's exchange, c.CourseDirectory.course_id in "
+                "nbgrader_config.py, and the LMS's name for the points, `export --column`."
             )
+        return (
+            f"{self.root} is no course folder: there is no source/{ASSIGNMENT} in it. "
+            "Change to the folder that holds nbgrader_config.py and run the command again."
+        )
 
     @property
     def source(self):
@@ -106,4 +117,9 @@ class Course:
                 f"{ASSIGNMENT} was never released: there are no notebooks in notebooks/{ASSIGNMENT}. "
                 "Run `python3 -m autograder release` first."
             )
-        return {path.stem: Released(path.stem, path.read_text(encoding="utf-8")) for path in paths}
+        try:
+            return {path.stem: read(path) for path in paths}
+        except NotANotebook as error:
+            raise CourseError(
+                f"notebooks/{ASSIGNMENT}/{error}. Run `python3 -m autograder release`: it makes that folder anew."
+            ) from None

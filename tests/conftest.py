@@ -102,6 +102,16 @@ def released(made_once):
 
 
 @pytest.fixture
+def draft(tmp_path):
+    """A course of the test's own, as it is committed; nbgrader has not made a gradebook yet."""
+    from autograder.course import Course
+
+    ignored = shutil.ignore_patterns(*MADE_AT_RUN_TIME, ".*", "tests", "findings")
+    shutil.copytree(ROOT, tmp_path / "draft", ignore=ignored)
+    return Course(tmp_path / "draft")
+
+
+@pytest.fixture
 def course(released, tmp_path):
     """A released course of the test's own."""
     from autograder.course import Course

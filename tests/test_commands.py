@@ -159,7 +159,6 @@ def assignment_in(course):
 def test_outside_a_course(course, tmp_path):
     elsewhere = tmp_path / "elsewhere"
     shutil.copytree(course.root / "autograder", elsewhere / "autograder")
-    shutil.copytree(course.package, elsewhere / "source/other/transform_lab")
     shutil.copy(course.root / "environment.txt", elsewhere)
     environment = {**os.environ, "PYTHONPATH": str(course.package.parent)}
     result = subprocess.run(

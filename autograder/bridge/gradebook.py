@@ -4,7 +4,6 @@ The marks are those that nbgrader's own SaveAutoGrades would record from the sam
 instead of cell by cell.
 """
 
-import copy
 import logging
 import shutil
 import sqlite3
@@ -22,9 +21,8 @@ from nbgrader.api import (
     SubmittedAssignment,
     SubmittedNotebook,
 )
-from nbgrader.coursedir import CourseDirectory
 from nbgrader.plugins import CsvExportPlugin
-from nbgrader.preprocessors import AssignLatePenalties, SaveCells
+from nbgrader.preprocessors import AssignLatePenalties
 from sqlalchemy import Engine, event, select, update
 from sqlalchemy.exc import DatabaseError, OperationalError
 
@@ -32,7 +30,8 @@ from ..course import ASSIGNMENT, CourseError
 from ..files import replace
 from ..grading.marks import CellGrade, NotebookGrades
 from ..intake.submission import TIMESTAMP
-from .nbgrader_api import settings
+from . import registration
+from .nbgrader_api import db_url, settings
 
 PATIENCE = 60.0  # seconds to wait for a database that somebody else has locked
 
@@ -47,29 +46,39 @@ def _wait_for_locks(connection, _):
         connection.execute(f"PRAGMA busy_timeout = {int(PATIENCE * 1000)}")
 
 
+def opened(course):
+    """nbgrader's Gradebook of a course, made where there is none; raises CourseError when it cannot be read."""
+    try:
+        return Gradebook(db_url(course))
+    except DatabaseError as error:
+        raise CourseError(
+            f"The gradebook cannot be read ({error.orig}). Put a backup in its place; or move it away, and "
+            "`python3 -m autograder grade --force` makes a new one from submitted/ (without hand-given grades)."
+        ) from None
+
+
 class Writer:
     """Records Graded submissions; a context manager that holds the gradebook open."""
 
     def __init__(self, course):
-        self.course, self.config = course, settings(course)
-        self.db_url = CourseDirectory(config=self.config).db_url
+        self.course, self.config, self.db_url = course, settings(course), db_url(course)
 
     def __enter__(self):
         released = self.course.notebooks  # raises CourseError when there are none, before a gradebook is made
+        self.gradebook = opened(self.course)
         try:
-            self.gradebook = Gradebook(self.db_url)
-        except DatabaseError as error:
-            raise CourseError(
-                f"The gradebook cannot be read ({error.orig}). Put a backup in its place; or move it away, and "
-                "`python3 -m autograder grade --force` makes a new one from submitted/ (without hand-given grades)."
-            ) from None
-        try:
-            self.gradebook.find_assignment(ASSIGNMENT)
-        except MissingEntry:
-            self._register(released)
+            registration.follow(self.gradebook, released, self.config, self.db_url)
+            self.stale = None
+        except CourseError as error:
+            self.stale = error  # the gradebook may be read and cleared; who wants to record first asks `can_record`
         cells = self.gradebook.db.execute(select(BaseCell.id, BaseCell.name)).all()
         self.cells = {identifier: name for identifier, name in cells}
         return self
+
+    def can_record(self):
+        """Raise CourseError when the released notebooks have other cells than the gradebook, which holds students' work."""
+        if self.stale:
+            raise self.stale
 
     def __exit__(self, *_):
         self.gradebook.close()
@@ -172,16 +181,6 @@ class Writer:
         """(id, notebook, cell, column) of what a submission has in a table; one query instead of one for each cell."""
         columns = select(table.id, table.notebook_id, table.cell_id, column)
         return self.gradebook.db.execute(columns.where(table.notebook_id.in_(notebooks))).all()
-
-    def _register(self, released):
-        """A gradebook that does not know the assignment (a fresh clone) learns it from the released notebooks.
-
-        This is the step of nbgrader's generate_assignment that fills the gradebook; the notebooks stay as they are.
-        """
-        self.gradebook.update_or_create_assignment(ASSIGNMENT)
-        for name, notebook in released.items():
-            resources = {"notebook": name, "assignment": ASSIGNMENT, "db_url": self.db_url}
-            SaveCells(config=self.config).preprocess(copy.deepcopy(notebook.notebook), {"nbgrader": resources})
 
     def _penalize(self, graded):
         """Late penalties are nbgrader's to decide, by the plug-in that its configuration names."""

@@ -15,7 +15,7 @@ from nbgrader.preprocessors import NbGraderPreprocessor
 from traitlets import Bool
 
 from .. import sandbox
-from ..course import Course
+from ..course import ASSIGNMENT, Course
 from ..grading.grade import grade_notebook, grading_run, new_seed
 from ..grading.records import RECORD
 from ..intake.restore import Intake, restore
@@ -45,6 +45,11 @@ class Exporter(NotebookExporter):
         path = Path(os.path.abspath(filename))
         if not path.is_relative_to(self.course.root / "submitted"):
             return super().from_filename(filename, resources, **kwargs)
+        if path.parent.name != ASSIGNMENT:
+            raise NbGraderException(
+                f"This course's grader knows the assignment {ASSIGNMENT} alone. Grade {path.parent.name} in a course folder "
+                "of its own, whose nbgrader_config.py does not name our classes."
+            )
         content, problem = read(path)
         intake = restore(b"" if content is None else content, self.course.notebooks[path.stem])
         for line in [problem] if problem else intake.problems:

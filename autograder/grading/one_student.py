@@ -51,7 +51,7 @@ def _submission(course, paths):
             refused.append(f"{path}: a folder is checked by itself; give it alone, or name the notebooks in it.")
         elif path.stem not in course.notebooks:
             names = ", ".join(f"{name}.ipynb" for name in course.notebooks)
-            refused.append(f"{path}: no notebook of this grading_run has that name; there are {names}.")
+            refused.append(f"{path}: no notebook of this assignment has that name; there are {names}.")
         elif path.stem in taken:
             refused.append(f"{path}: left out; {taken[path.stem]} is the same notebook.")
         else:

@@ -88,7 +88,8 @@ def by_hand(course):
     points = [most for released in course.notebooks.values() for most in released.questions.values()]
     if not points:
         return []
-    return [f"The {len(points)} written questions ({sum(points):g} points) are graded by hand and not counted here."]
+    which, are = ("written question", "is") if len(points) == 1 else (f"{len(points)} written questions", "are")
+    return [f"The {which} ({sum(points):g} points) {are} graded by hand and not counted here."]
 
 
 def _unknown(name, names):

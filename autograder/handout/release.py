@@ -6,28 +6,28 @@ The page of all exercises, which instructors read, is made along with it.
 import json
 import shutil
 
-from ..bridge import nbgrader_api
+from ..bridge import gradebook, nbgrader_api, registration
 from ..course import ASSIGNMENT, CourseError
 from ..exercises import EXERCISES, PUBLIC_SEED, key
 from ..files import replace
-from ..released import Released, without_points
-from . import exercises_page
+from ..released import without_points
+from . import exercises_page, source
 
 
 def public_key(course):
-    """The text of key.json: the public cases of every exercise, and what each notebook asks for how many points."""
+    """The text of key.json: what each notebook in source/ asks for how many points, and the public cases of its exercises."""
+    return _key(source.notebooks(course))
+
+
+def _key(wanted):
     points, notebooks = {}, {}
-    for path in sorted(course.source.glob("*.ipynb")):
-        notebook = Released(path.stem, path.read_text(encoding="utf-8"))
+    for notebook in wanted.values():
         points |= notebook.points
         questions = [
             [without_points(notebook.section(name)).removeprefix("Question: "), most]
             for name, most in notebook.questions.items()
         ]
         notebooks[notebook.name] = {"exercises": list(notebook.points), "questions": questions}
-    absent = [name for name in EXERCISES if name not in points]
-    if absent:
-        raise CourseError(f"The notebooks in source/{ASSIGNMENT} have no test cell for: {', '.join(absent)}.")
     exercises = {name: {"points": points[name], **key(EXERCISES[name], PUBLIC_SEED)} for name in points}
     return f'{{"notebooks":{_json(notebooks)},\n"exercises":{{\n{_by_line(exercises)}\n}}}}\n'
 
@@ -47,7 +47,10 @@ def _json(plain):
 
 def release(course):
     """Make notebooks/ from source/ and record the assignment in the gradebook; the lines that say what changed."""
-    before, text = course.release_contents(), public_key(course)
+    notebooks = source.notebooks(course)
+    with gradebook.opened(course) as book:
+        registration.refuse_to_lose(book, notebooks)
+    before, text = course.release_contents(), _key(notebooks)
     key_file = course.package / "key.json"
     key_before = key_file.read_bytes() if key_file.exists() else None
     try:

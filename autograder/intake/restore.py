@@ -139,12 +139,24 @@ def _restore_cell(intake, released, grade_id, cell, claimed):
         intake.say(released, f"the cell {grade_id} had another type; it was set back")
     for flag in ("points", "grade", "solution", "locked"):
         right = original.metadata.nbgrader.get(flag)
-        if flag in claimed and claimed[flag] != right:
+        if flag in claimed and claimed[flag] != right and not (flag == "points" and _was_worth(original, claimed)):
             intake.say(released, f"the cell {grade_id} said {flag} {claimed[flag]!r:.40}; it was set back to {right!r}")
     cell.metadata = copy.deepcopy(original.metadata)
     if original.metadata.nbgrader.locked and cell.source != original.source:
         cell.source = original.source
         intake.say(released, f"the locked cell {grade_id} had been changed; its text was set back")
+
+
+def _was_worth(original, claimed):
+    """Whether an earlier release gave the cell the points that the file claims: nbgrader's checksum counts them in."""
+    from nbgrader import utils  # here, because it takes longer than to check one student's files
+
+    earlier = copy.deepcopy(original)
+    earlier.metadata.nbgrader.points = claimed["points"]
+    try:
+        return claimed.get("checksum") == utils.compute_checksum(earlier)
+    except (TypeError, ValueError):  # no number
+        return False
 
 
 def _add_missing(intake, released, grade_id, original):

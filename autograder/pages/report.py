@@ -14,7 +14,6 @@ from urllib.parse import quote
 from markupsafe import Markup
 
 from ..course import ASSIGNMENT
-from ..exercises import EXERCISES
 from ..files import replace
 from ..grading.judge import Row
 from . import examples
@@ -63,7 +62,7 @@ def write(course, writer):
         formgrader=FORMGRADER,
         since=since,
         changes=findings.changes(before, works) if before else None,
-        by_hand={student: _by_hand(grades[student]) for student in works},
+        by_hand={student: _by_hand(course, grades[student]) for student in works},
     )
     replace(course.reports / "index.html", page)
     return {student: work.rows for student, work in works.items()}
@@ -151,11 +150,12 @@ def _section(course, exercise):
     return f"{notebook}: {section}", f"{quote(address)}#{quote(section.replace(' ', '-'))}"
 
 
-def _by_hand(grades):
-    """(points given by hand, most of these, points in all, most in all) of a student's {notebook: Grades}."""
-    everything = [item for found in grades.values() for item in found.cells.items()]
-    by_hand = [points for name, points in everything if name not in EXERCISES]
-    in_all = [points for _, points in everything]
+def _by_hand(course, grades):
+    """(points given by hand, most of these, points in all, most in all) of a student's {notebook: NotebookGrades}."""
+    questions = {(notebook, name) for notebook, released in course.notebooks.items() for name in released.questions}
+    everything = {(notebook, name): p for notebook, found in grades.items() for name, p in found.cells.items()}
+    by_hand = [points for cell, points in everything.items() if cell in questions]
+    in_all = list(everything.values())
     return tuple(sum(getattr(p, field) for p in cells) for cells in (by_hand, in_all) for field in ("earned", "most"))
 
 

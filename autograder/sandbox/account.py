@@ -15,6 +15,7 @@ import tempfile
 import time
 from pathlib import Path
 
+from .. import ASSIGNMENT
 from .bounds import PATIENCE, NotStarted
 
 FIRST, USERS = 20_000, 40_000  # numbers that belong to nobody; a container may have no more than 65536
@@ -30,7 +31,7 @@ class Account:
     def __init__(self, package):
         self.number = _unused()
         self.home = Path(tempfile.mkdtemp(prefix="notebook-"))
-        self.folder = self.home / "transforms"
+        self.folder = self.home / ASSIGNMENT
         shutil.copytree(package, self.folder / package.name)
         for folder in (self.home, self.folder):
             os.chown(folder, self.number, self.number)

@@ -14,6 +14,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+from .. import ASSIGNMENT
 from .bounds import COURSE, FOLDER, PATIENCE, WRITABLE, NotStarted
 
 HERE = Path(__file__).parent
@@ -92,17 +93,17 @@ def command(code):
     arguments += ["--proc", "/proc", "--dev", "/dev"]
     for folder in map(str, WRITABLE):
         arguments += ["--perms", "1777", "--size", str(FOLDER), "--tmpfs", folder]
-    arguments += ["--perms", "0777", "--dir", str(COURSE / "transforms")]
-    made = {*WRITABLE, COURSE / "transforms"}
+    arguments += ["--perms", "0777", "--dir", str(COURSE / ASSIGNMENT)]
+    made = {*WRITABLE, COURSE / ASSIGNMENT}
     for path in filter(Path.exists, map(Path, ("/etc/ld.so.cache", "/etc/fonts"))):
         arguments += _bind(path, path, made)
     for folder in python_folders():
         if not folder.is_relative_to("/usr") and folder not in made:
             arguments += _bind(folder, folder, made)
     arguments += _bind(code, code, made)
-    arguments += _bind(package, COURSE / "transforms" / package.name, made)
+    arguments += _bind(package, COURSE / ASSIGNMENT / package.name, made)
     # bubblewrap makes / and /dev as folders in memory, of no bounded size.
-    return [*arguments, "--remount-ro", "/dev", "--remount-ro", "/", "--chdir", str(COURSE / "transforms")]
+    return [*arguments, "--remount-ro", "/dev", "--remount-ro", "/", "--chdir", str(COURSE / ASSIGNMENT)]
 
 
 def copy_code(package):

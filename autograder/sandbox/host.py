@@ -16,6 +16,7 @@ from pathlib import Path
 from transform_lab.judging import codec
 from transform_lab.judging.verdict import Reply
 
+from .. import ASSIGNMENT
 from ..untrusted import printable
 from .account import Account
 from .bounds import COURSE, PATIENCE, Limits, NotStarted
@@ -151,11 +152,11 @@ class NotebookProcess:
             elif sandbox.isolated:
                 self.namespaces = Namespaces(server.code)
                 settings |= {"limits": self.limits.resources(), "number": NOBODY + self.namespaces.pid}
-                settings |= {"folder": str(COURSE / "transforms"), "environment": {"HOME": "/tmp"}}
+                settings |= {"folder": str(COURSE / ASSIGNMENT), "environment": {"HOME": "/tmp"}}
             else:
                 # A folder of its own with the same files, which is tidy, but protects nothing.
                 self.folder = tempfile.TemporaryDirectory(prefix="notebook-", ignore_cleanup_errors=True)
-                folder = Path(self.folder.name, "transforms")
+                folder = Path(self.folder.name, ASSIGNMENT)
                 shutil.copytree(server.code / sandbox.package.name, folder / sandbox.package.name)
                 settings |= {"limits": {}, "folder": str(folder), "environment": {"HOME": self.folder.name}}
             server.fork(inside, self.namespaces)

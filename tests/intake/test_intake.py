@@ -5,6 +5,7 @@ import json
 
 import nbformat
 import pytest
+from nbgrader.utils import compute_checksum
 from support import ROOT
 
 from autograder.course import Course
@@ -129,6 +130,22 @@ def test_changed_points_and_flags_are_set_back(released, notebook):
     assert graded(intake.notebook, "transform_to_pose").metadata == released.cells["transform_to_pose"].metadata
     assert len(intake.problems) == 4
     assert "points 100" in intake.problems[0]
+
+
+def test_points_of_an_earlier_release_are_no_change_of_the_students(released, notebook):
+    cell = graded(notebook, "transform_to_pose")
+    cell.metadata.nbgrader.points = 3
+    cell.metadata.nbgrader.checksum = compute_checksum(cell)
+    intake = restore(handed_in(notebook), released)
+    assert graded(intake.notebook, "transform_to_pose").metadata == released.cells["transform_to_pose"].metadata
+    assert intake.problems == []
+
+
+@pytest.mark.parametrize("points", ["many", None, [1], 5])
+def test_other_points_are_told_whatever_they_are(released, notebook, points):
+    graded(notebook, "transform_to_pose").metadata.nbgrader.points = points
+    (problem,) = restore(handed_in(notebook), released).problems
+    assert f"said points {points!r}" in problem
 
 
 def test_a_changed_test_cell_is_set_back(released, notebook):
