@@ -195,9 +195,13 @@ def main():
     parser.add_argument("--nbgrader-students", type=int, default=6, help="for stock nbgrader (0: leave it out)")
     parser.add_argument("--growth", action="store_true", help="grade a tenth of the students first")
     parser.add_argument("--profile", action="store_true", help="only tell where the time of one submission goes")
+    parser.add_argument("--smallest", action="store_true", help="do all of it with one student, to see that it works")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="benchmark-") as folder:
-        if options.profile:
+        if options.smallest:
+            compare(Path(folder), 1, 1, growth=False)
+            profile(Path(folder), times=1)
+        elif options.profile:
             profile(Path(folder))
         else:
             compare(Path(folder), options.students, options.nbgrader_students, options.growth)

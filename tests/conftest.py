@@ -9,14 +9,21 @@ import tempfile
 from pathlib import Path
 
 import pytest
-from support import CHROMIUM_FLAGS, MADE_AT_RUN_TIME, PATIENCE, ROOT, SOFTWARE_WEBGL, lacking, path_without
+from support import (
+    BROWSERS,
+    CHROMIUM_FLAGS,
+    MADE_AT_RUN_TIME,
+    PATIENCE,
+    ROOT,
+    SOFTWARE_WEBGL,
+    chromium_here,
+    lacking,
+    path_without,
+)
 
 # Tests that use one of these fixtures, by themselves or through another, are left to `test --all`; all others are quick.
 TIERS = {"sandboxed": "sandbox", "open_python": "sandbox", "chromium": "browser", "slow": "slow"}
-TOOLS = {
-    "sandbox": ("bwrap",),
-    "browser": ("chromium", "chromium-browser", "google-chrome"),
-}  # which no other tier finds
+TOOLS = {"sandbox": ["bwrap"], "browser": BROWSERS}  # programs that no other tier finds
 
 
 def pytest_addoption(parser):
@@ -166,8 +173,7 @@ def open_python():
 @pytest.fixture(scope="session")
 def chromium():
     """The path of a Chromium browser."""
-    found = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-    return found or lacking("needs Chromium, to open pages as a student's browser does")
+    return chromium_here() or lacking("needs Chromium, to open pages as a student's browser does")
 
 
 @pytest.fixture(scope="module")

@@ -28,6 +28,7 @@ from autograder.released import Released
 ROOT = Path(__file__).resolve().parent.parent
 PATH = f"{Path(sys.prefix, 'bin')}{os.pathsep}{os.environ['PATH']}"  # nbgrader runs alembic by name
 MADE_AT_RUN_TIME = (".git", ".venv", "submitted", "autograded", "feedback", "reports", "gradebook.db", "__pycache__")
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 SOFTWARE_WEBGL = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 CHROMIUM_FLAGS = (
     "--no-sandbox --disable-gpu --disable-background-networking --disable-component-update --disable-sync --no-first-run"
@@ -58,6 +59,11 @@ def lacking(what):
     if os.environ.get("CI") == "true":
         pytest.fail(what)
     pytest.skip(what)
+
+
+def chromium_here():
+    """The path of a Chromium browser, or None."""
+    return next(filter(None, map(shutil.which, BROWSERS)), None)
 
 
 @cache

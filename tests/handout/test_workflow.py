@@ -124,8 +124,9 @@ def test_only_staff_decide_what_runs_and_no_job_keeps_a_token():
 
 def test_ci_calls_the_same_script_as_everywhere():
     ci = yaml.safe_load((WORKFLOWS / "ci.yml").read_text())
-    (job,) = ci["jobs"].values()
-    assert [step["run"] for step in job["steps"] if "run" in step] == [".ci/run"]
+    called = {name: [step["run"] for step in job["steps"] if "run" in step] for name, job in ci["jobs"].items()}
+    assert called == {"quick": ["python3 -m autograder test"], "all": [".ci/run"]}
+    assert (ROOT / ".ci/run").read_text().endswith("\nexport CI=true\nexec python3 -m autograder test --all\n")
 
 
 def test_repositories_with_a_commit_that_was_not_graded_are_found(tmp_path):

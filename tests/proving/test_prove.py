@@ -7,7 +7,7 @@ import sys
 
 import nbformat
 import pytest
-from conftest import MADE_AT_RUN_TIME, ROOT
+from support import MADE_AT_RUN_TIME, ROOT
 
 from autograder.commands import run
 from autograder.course import Course

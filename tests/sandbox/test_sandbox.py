@@ -12,12 +12,18 @@ from autograder.sandbox import Ended, Limits, Sandbox
 
 PACKAGE = ROOT / "source/transforms/transform_lab"
 QUICK = Limits(cell=4.0, call=2.0, grace=1.0)  # for loops to end soon; ample for the rest on a busy machine
-pytestmark = pytest.mark.usefixtures("sandboxed")
+HANDED_IN = {"helper.py": b"answer = 42\n", "data/points.csv": b"1,2,3\n"}
 
 
 @pytest.fixture(scope="module")
-def sandbox():
-    with Sandbox(PACKAGE, {"helper.py": b"answer = 42\n", "data/points.csv": b"1,2,3\n"}, QUICK) as box:
+def sandbox(sandboxed):
+    with Sandbox(PACKAGE, HANDED_IN, QUICK) as box:
+        yield box
+
+
+@pytest.fixture(scope="module")
+def unprotected():
+    with Sandbox(PACKAGE, HANDED_IN, isolated=False) as box:
         yield box
 
 
@@ -39,39 +45,49 @@ def error(sandbox, *cells):
     return output["ename"]
 
 
-@pytest.mark.parametrize(
-    "cell, outputs",
-    [
-        ("1 + 1", [("execute_result", "2")]),
-        ("1 + 1;", []),
-        ("print('a'); print('b')", [("stdout", "a\nb\n")]),
-        ("import sys; print('oh', file=sys.stderr)", [("stderr", "oh\n")]),
-        ("import os; _ = os.system('echo from a command')", [("stdout", "from a command\n")]),
-        ("display(3); 4", [("display_data", "3"), ("execute_result", "4")]),
-        ("h = display(1, display_id=True); h.update(2)", [("display_data", "2")]),
-        ("from IPython.display import clear_output\nprint(1); clear_output(); print(2)", [("stdout", "2\n")]),
-        ("import asyncio\nawait asyncio.sleep(0)\n5", [("execute_result", "5")]),
-        ("%%bash\necho shell", [("stdout", "shell\n")]),
-        ("import helper; helper.answer", [("execute_result", "42")]),
-        ("open('data/points.csv').read()", [("execute_result", "'1,2,3\\n'")]),
-        ("input('name?')", [("error", "StdinNotImplementedError")]),
-        ("1 / 0", [("error", "ZeroDivisionError")]),
-        ("def f(:", [("error", "SyntaxError")]),
-    ],
-)
-def test_cells_give_the_outputs_of_jupyter(sandbox, cell, outputs):
+OUTPUTS = [
+    ("1 + 1", [("execute_result", "2")]),
+    ("1 + 1;", []),
+    ("print('a'); print('b')", [("stdout", "a\nb\n")]),
+    ("import sys; print('oh', file=sys.stderr)", [("stderr", "oh\n")]),
+    ("import os; _ = os.system('echo from a command')", [("stdout", "from a command\n")]),
+    ("display(3); 4", [("display_data", "3"), ("execute_result", "4")]),
+    ("h = display(1, display_id=True); h.update(2)", [("display_data", "2")]),
+    ("from IPython.display import clear_output\nprint(1); clear_output(); print(2)", [("stdout", "2\n")]),
+    ("import asyncio\nawait asyncio.sleep(0)\n5", [("execute_result", "5")]),
+    ("%%bash\necho shell", [("stdout", "shell\n")]),
+    ("import helper; helper.answer", [("execute_result", "42")]),
+    ("open('data/points.csv').read()", [("execute_result", "'1,2,3\\n'")]),
+    ("input('name?')", [("error", "StdinNotImplementedError")]),
+    ("1 / 0", [("error", "ZeroDivisionError")]),
+    ("def f(:", [("error", "SyntaxError")]),
+]
+
+
+def shown(outputs):
+    """What there is to see of outputs: (kind or stream, text)."""
     found = []
-    for output in run(sandbox, cell):
+    for output in outputs:
         if output["output_type"] == "stream":
             found.append((output["name"], output["text"]))
         elif output["output_type"] == "error":
             found.append(("error", output["ename"]))
         else:
             found.append((output["output_type"], output["data"]["text/plain"]))
-    assert found == outputs
+    return found
 
 
-def test_helpers_may_have_the_names_of_the_graders_modules():
+@pytest.mark.parametrize("cell, outputs", OUTPUTS)
+def test_cells_give_the_outputs_of_jupyter(sandbox, cell, outputs):
+    assert shown(run(sandbox, cell)) == outputs
+
+
+@pytest.mark.parametrize("cell, outputs", OUTPUTS)
+def test_cells_give_the_same_outputs_unprotected(unprotected, cell, outputs):
+    assert shown(run(unprotected, cell)) == outputs
+
+
+def test_helpers_may_have_the_names_of_the_graders_modules(sandboxed):
     names = ("channel", "executor", "worker", "host")
     with Sandbox(PACKAGE, {f"{name}.py": f"answer = {name!r}".encode() for name in names}, QUICK) as box:
         for name in names:
@@ -187,19 +203,19 @@ def killed(limits, cell):
     return ended.value.reason
 
 
-def test_memory_of_many_processes_is_limited():
+def test_memory_of_many_processes_is_limited(sandboxed):
     """Each stays below its own limit, all together do not."""
     cell = FORKED.format(count=8, work="x = bytearray(100_000_000); time.sleep(60)", after="time.sleep(60)")
     assert killed(Limits(memory=600_000_000), cell) == "it used more than 0.6 GB of memory"
 
 
-def test_processor_time_is_limited():
+def test_processor_time_is_limited(sandboxed):
     """Of all processes together, also of those that a cell leaves behind."""
     cell = FORKED.format(count=4, work="os.setsid()\n        while True: pass", after="")
     assert killed(Limits(cpu=3.0), cell) == "it used more than 3 s of processor time"
 
 
-def test_the_number_of_files_is_limited():
+def test_the_number_of_files_is_limited(sandboxed):
     cell = "for n in range(10**9):\n    open(f'/tmp/{n}', 'w').close()"
     assert killed(Limits(files=2_000), cell) == "it used more than 2000 files"
 
@@ -372,8 +388,8 @@ def test_a_notebook_has_a_budget_of_time(sandbox):
                 notebook.run_cell("1")
 
 
-def test_without_bubblewrap_the_same_code_runs_unprotected(sandbox):
-    with Sandbox(PACKAGE, limits=QUICK, isolated=False) as box:
+def test_without_bubblewrap_the_same_code_runs_unprotected():
+    with Sandbox(PACKAGE, isolated=False) as box:
         assert value(box, "import os; os.getuid()") == str(os.getuid())
         folder = value(box, "import os; os.getcwd()").strip("'")
     assert not Path(folder).exists()
