@@ -1,7 +1,7 @@
 """What decides a grade, and what makes a page, each in one number.
 
 - Of grades: the released notebooks, the limits, and the modules on the way from a file to its verdict: all that those
-  of FILE_TO_VERDICT import, one from the other. Of the students' package the panel does not count, nor what draws.
+  of FILE_TO_VERDICT import, one from the other. Of the students' package the panel and its lines do not count, nor what draws.
 - Of pages: the templates, and all that the modules of PAGES import, one from the other.
 
 Of a module its syntax counts: no comment, layout or docstring. What the exercises' misconceptions say and their hints
@@ -36,7 +36,7 @@ FILE_TO_VERDICT = (
     PACKAGE + "__init__",
 )
 PAGES = ("autograder.pages.feedback", "autograder.pages.exporter", "autograder.pages.markdown", *SPECIFIED)
-PANEL, VIEWING = PACKAGE + "judging.panel", PACKAGE + "viewing."
+PANEL, VIEWING = (PACKAGE + "judging.panel", PACKAGE + "judging.lines"), PACKAGE + "viewing."
 REMEMBERED = Path(__file__).parent / "__pycache__" / "digests.json"
 
 
@@ -112,7 +112,7 @@ def deciding(modules):
     return {
         name
         for name in reached(modules, FILE_TO_VERDICT)
-        if name != PANEL and not (name.startswith(PACKAGE) and draws(name))
+        if name not in PANEL and not (name.startswith(PACKAGE) and draws(name))
     }
 
 

@@ -6,7 +6,7 @@ from concurrent.futures import Future
 import nbformat
 import pytest
 from rich.console import Console
-from support import verdicts
+from support import ASKED, NAMES, verdicts
 from transform_lab.judging.status import STATUSES, Status
 from transform_lab.judging.verdict import Verdict
 
@@ -18,15 +18,16 @@ from autograder.pages import export, feedback
 from autograder.pages.report_data import Work, look, results
 
 ADDED = "withdrawn"
-WORDS = {  # the column of "Each exercise", counted after the average, and what else there is to read
-    "graded": (2, []),
-    "timeout": (3, ["Had to be stopped"]),
-    "killed": (3, ["Had to be stopped"]),
-    "error": (3, ["Could not be judged, because of an error"]),
-    "missing": (4, []),
-    "unreadable": (3, []),
-    ADDED: (3, ["Could not be judged"]),
-}
+NOTEBOOK, EXERCISE = next(iter(ASKED)), NAMES[0]
+COLUMNS = ("right", "named", "unnamed", "failed", "undone")  # of "Each exercise", after the average
+CONTRACT = (
+    "graded",
+    "missing",
+    "error",
+    "timeout",
+    "killed",
+    "unreadable",
+)  # as scripts that read verdicts.csv know them
 
 
 @pytest.fixture
@@ -67,7 +68,7 @@ def graded(course, solved, hand_in, monkeypatch, capsys):
         monkeypatch.setattr(grade, "key", lambda exercise, seed: {})  # no case is ever called
         monkeypatch.setattr(classroom, "Processes", Here)
         monkeypatch.setattr(commands, "console", Console(width=400, highlight=False, soft_wrap=True))
-        hand_in(course, "ann", {"1_rotation": solved["1_rotation"]})
+        hand_in(course, "ann", {NOTEBOOK: solved[NOTEBOOK]})
         assert commands._grade(course, ["ann"], protected=False, jobs=1, with_feedback=False) == []
         return course, capsys.readouterr().out
 
@@ -77,48 +78,47 @@ def graded(course, solved, hand_in, monkeypatch, capsys):
 @pytest.mark.parametrize("status", [*STATUSES, ADDED])
 def test_every_status_is_seen_in_all_that_grading_makes(status, added, graded):
     course, said = graded(status)
-    assert {row["status"] for row in verdicts(course) if row["notebook"] == "1_rotation"} == {status}
+    assert {row["status"] for row in verdicts(course) if row["notebook"] == NOTEBOOK} == {status}
     if status != "graded":
-        count = 4 + 12 * (status == "missing")  # the other notebooks were not handed in
-        assert f", {count} {status}" in said and f"{status} (rotation_about_z, rotation_from_axes, " in said
+        count = len(NAMES if status == "missing" else ASKED[NOTEBOOK].points)  # the other notebooks are missing
+        assert f", {count} {status}" in said and f"{status} ({', '.join(ASKED[NOTEBOOK].points)}" in said
     page = (course.reports / "index.html").read_text(encoding="utf-8")
-    counts = page.partition("<code>rotation_about_z</code>")[2].partition("</tr>")[0].split('<td class="number')[2:]
-    column, titles = WORDS[status]
-    assert [cell.partition(">")[2].partition("<")[0] for cell in counts] == [
-        "1" if n == column else "0" for n in range(5)
-    ]
-    for title in titles:
+    counts = page.partition(f"<code>{EXERCISE}</code>")[2].partition("</tr>")[0].split('<td class="number')[2:]
+    column = STATUSES[status].counts
+    assert [cell.partition(">")[2].partition("<")[0] for cell in counts] == ["01"[name == column] for name in COLUMNS]
+    if title := STATUSES[status].look:
         section = page.partition(f"<h3>{title}: 1 student</h3>")[2].partition("<h3>")[0]
-        assert STATUSES[status].means in section and "<code>same_rotation</code>" in section
+        assert STATUSES[status].means in section and f"<code>{EXERCISE}</code>" in section
     with Writer(course) as writer:
         assert STATUSES[status].means in feedback.summary(course, "ann", writer.grades()["ann"])
-    (path,) = course.autograded("ann").glob("1_rotation.ipynb")
+    (path,) = course.autograded("ann").glob("*.ipynb")
     opinions = [
         cell.outputs[0].data["text/html"] for cell in nbformat.read(path, as_version=4).cells if cell.get("outputs")
     ]
-    assert len(opinions) == 4 and all(STATUSES[status].means in opinion for opinion in opinions)
+    assert len(opinions) == len(ASKED[NOTEBOOK].points)
+    assert all(STATUSES[status].means in opinion for opinion in opinions)
 
 
 @pytest.mark.parametrize("status", [*STATUSES, ADDED])
 def test_every_status_is_counted_once_and_said_in_exports(status, added):
-    row = Row("1_rotation", "is_rotation", 0.0, 2.0, status)
+    row = Row(NOTEBOOK, EXERCISE, 0.0, 2.0, status)
     ((result,),) = results({"ann": Work([row])}).values()
     assert sum((result.right, result.named, result.unnamed, result.failed, result.undone)) == 1
-    assert export._said(row) == f"is_rotation 0 of 2{'' if status == 'graded' else f' ({status})'}"
+    assert export._said(row) == f"{EXERCISE} 0 of 2{'' if status == 'graded' else f' ({status})'}"
 
 
 def test_records_without_words_say_what_the_status_means(added):
     """A look is asked for, too, where an exercise of this status counts as not done."""
     STATUSES[ADDED] = Status("The student took it back.", counts="undone")
-    found = look({"ann": Work([Row("1_rotation", "is_rotation", 0.0, 2.0, ADDED)])})
+    found = look({"ann": Work([Row(NOTEBOOK, EXERCISE, 0.0, 2.0, ADDED)])})
     assert found.reasons == {
-        "Could not be judged": {"ann": {"status withdrawn: The student took it back.": ["is_rotation"]}}
+        "Could not be judged": {"ann": {"status withdrawn: The student took it back.": [EXERCISE]}}
     }
 
 
 def test_each_says_what_it_means_and_how_it_counts():
-    for name, status in STATUSES.items():
-        assert name.isidentifier() and status.means.endswith(".")
+    assert set(CONTRACT) <= set(STATUSES)
+    assert all(name.isidentifier() and status.means.endswith(".") for name, status in STATUSES.items())
     with pytest.raises(ValueError, match="'lost' is no column of the report"):
         Status("It was lost.", counts="lost")
 
@@ -133,8 +133,8 @@ def test_a_status_that_is_not_in_the_list_is_refused_where_it_is_made(make, stat
 @pytest.mark.parametrize("status", [ADDED, ["graded"], None])
 def test_a_record_with_an_unknown_status_counts_as_not_graded(status, graded):
     course, _ = graded("graded")
-    (path,) = course.autograded("ann").glob("1_rotation.ipynb")
-    assert list(records.recorded(course, "ann")) == ["1_rotation"]
+    (path,) = course.autograded("ann").glob("*.ipynb")
+    assert list(records.recorded(course, "ann")) == [NOTEBOOK]
     notebook = json.loads(path.read_text(encoding="utf-8"))
     notebook["metadata"]["transform_lab"]["rows"][1]["status"] = status
     path.write_text(json.dumps(notebook), encoding="utf-8")

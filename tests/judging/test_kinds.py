@@ -124,7 +124,8 @@ def test_it_is_drawn_or_said_not_to_be(returns):
     for answer in right_answers(returns):
         if draw:
             viewer, parts = Viewer("a"), parts_of(returns, codec.decode(answer))
-            draw(viewer, [("b (expected)", parts, True), ("b (yours)", parts, False)])
+            draw(viewer, "b (expected)", parts, True, 0.5)
+            draw(viewer, "b (yours)", parts, False, 0.5)
             assert "b (expected)" in viewer.description() and "b (yours)" in viewer.description()
 
 
