@@ -36,7 +36,7 @@ class Case:
 class Misconception:
     """One way to get an exercise wrong, as code: `wrong` answers the exercise's arguments as that student would."""
 
-    id: str  # of the design's list; two of them, joined by ";", for two mistakes at once
+    id: str  # as verdicts.csv has it, such as "wrong-axis"; two of them, joined by ";", for two mistakes at once
     wrong: Callable
     says: str  # what the answer shows
     hint: str  # helps without giving the solution away
