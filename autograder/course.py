@@ -7,7 +7,7 @@ from functools import cached_property
 from pathlib import Path
 
 from . import ASSIGNMENT
-from .released import NotANotebook, read
+from .released import NotANotebook, Released, read
 
 
 class CourseError(Exception):
@@ -40,41 +40,41 @@ class Course:
         )
 
     @property
-    def source(self):
+    def source(self) -> Path:
         return self.root / "source" / ASSIGNMENT
 
     @property
-    def package(self):
+    def package(self) -> Path:
         """The students' package, as the instructor has it."""
         return self.source / "transform_lab"
 
     @property
-    def release(self):
+    def release(self) -> Path:
         return self.root / "notebooks" / ASSIGNMENT
 
-    def release_contents(self):
+    def release_contents(self) -> dict[str, bytes]:
         """What students get, {path relative to the release: bytes}, in order; empty when nothing was released."""
         paths = (path for path in sorted(self.release.rglob("*")) if path.is_file() and "__pycache__" not in path.parts)
         return {path.relative_to(self.release).as_posix(): path.read_bytes() for path in paths}
 
     @property
-    def reports(self):
+    def reports(self) -> Path:
         return self.root / "reports" / ASSIGNMENT
 
     @property
-    def gradebook(self):
+    def gradebook(self) -> Path:
         return self.root / "gradebook.db"
 
-    def submitted(self, student):
+    def submitted(self, student: str) -> Path:
         return self.root / "submitted" / student / ASSIGNMENT
 
-    def autograded(self, student):
+    def autograded(self, student: str) -> Path:
         return self.root / "autograded" / student / ASSIGNMENT
 
-    def feedback(self, student):
+    def feedback(self, student: str) -> Path:
         return self.root / "feedback" / student / ASSIGNMENT
 
-    def students(self):
+    def students(self) -> list[str]:
         """Those who handed the assignment in, by the folders below submitted/."""
         folder = self.root / "submitted"
         if not folder.is_dir():
@@ -84,7 +84,7 @@ class Course:
             )
         return sorted(name for name in self._folders() if self.submitted(name).is_dir())
 
-    def astray(self):
+    def astray(self) -> list[str]:
         """The folders below submitted/ that hold no submission of this assignment."""
         return sorted(name for name in self._folders() if not self.submitted(name).is_dir())
 
@@ -109,7 +109,7 @@ class Course:
             os.close(folder)
 
     @cached_property
-    def notebooks(self):
+    def notebooks(self) -> dict[str, Released]:
         """The released notebooks, {name: Released}, in order."""
         paths = sorted(self.release.glob("*.ipynb"))
         if not paths:

@@ -1,9 +1,10 @@
 """Files that others may be reading while they are written."""
 
 import os
+from pathlib import Path
 
 
-def replace(path, text):
+def replace(path: Path, text: str) -> None:
     """Write a file in one step: whoever reads it finds the old text or the new one, and never half of it."""
     fresh = path.with_name(f".{path.name}.new")
     try:

@@ -13,7 +13,7 @@ class NotANotebook(ValueError):
     """A file of the course's is no Jupyter notebook; the message begins with its name and says why."""
 
 
-def without_points(heading):
+def without_points(heading: str) -> str:
     """A heading without the "(2 points, …)" at its end."""
     return re.sub(POINTS, "", heading)
 
@@ -72,7 +72,7 @@ class Released:
         return {cell.metadata.nbgrader.grade_id: cell for cell in self.notebook.cells if cell.metadata.get("nbgrader")}
 
     @cached_property
-    def points(self):
+    def points(self) -> dict[str, float]:
         """The exercises in this notebook, {name: points}, in order."""
         from .exercises import EXERCISES
 
@@ -83,12 +83,12 @@ class Released:
         }
 
     @cached_property
-    def questions(self):
+    def questions(self) -> dict[str, float]:
         """What a human grades in this notebook, {name: points}, in order."""
         graded = {name: cell.metadata.nbgrader for name, cell in self.cells.items() if cell.metadata.nbgrader.grade}
         return {name: float(nbgrader.points) for name, nbgrader in graded.items() if name not in self.points}
 
-    def section(self, name):
+    def section(self, name: str) -> str:
         """The heading (`## …`, as it is read) of the part of the notebook that leads to an exercise or a question."""
         found = ""
         for cell in self.notebook.cells:
@@ -100,7 +100,7 @@ class Released:
         return ""
 
     @property
-    def title(self):
+    def title(self) -> str:
         """The notebook's first heading."""
         cells = (cell.source for cell in self.notebook.cells if cell.cell_type == "markdown")
         return next(
@@ -108,5 +108,5 @@ class Released:
         )
 
     @property
-    def digest(self):
+    def digest(self) -> str:
         return hashlib.sha256(self.text.encode()).hexdigest()

@@ -13,12 +13,12 @@ ACTIVE_LATEX = re.compile(r"\\(href|url|require|style|class|cssId|unicode|html[A
 HTML_TAGS = nh3.ALLOWED_TAGS - {"a", "img"}
 
 
-def printable(text):
+def printable(text: str) -> str:
     """Text without the halves of characters that no file and no terminal can hold."""
     return text.encode("utf-8", "replace").decode("utf-8")
 
 
-def calm(text):
+def calm(text: str) -> str:
     """Text in which no link runs a script, and no formula links, loads or styles; what is taken out is left as words."""
     text = ACTIVE_LATEX.sub(r"\1", text)
     while "javascript:" in html.unescape(text).lower():
@@ -26,14 +26,15 @@ def calm(text):
     return text
 
 
-def safe(output):
+def safe(output: dict) -> dict | None:
     """`output` (an untrusted dictionary) as an nbformat output, or None when it is nothing that can be shown."""
     kind = output.get("output_type")
     if kind == "stream":
         name = "stderr" if output.get("name") == "stderr" else "stdout"
         return {"output_type": "stream", "name": name, "text": printable(str(output.get("text", "")))}
     if kind == "error":
-        lines = output.get("traceback") if isinstance(output.get("traceback"), list) else []
+        lines = output.get("traceback")
+        lines = lines if isinstance(lines, list) else []
         return {
             "output_type": "error",
             "ename": printable(str(output.get("ename", ""))),
@@ -41,7 +42,8 @@ def safe(output):
             "traceback": [printable(str(line)) for line in lines],
         }
     if kind in ("display_data", "execute_result"):
-        data = output.get("data") if isinstance(output.get("data"), dict) else {}
+        data = output.get("data")
+        data = data if isinstance(data, dict) else {}
         kept = {
             mime: value for mime, value in ((mime, _safe_data(mime, value)) for mime, value in data.items()) if value
         }

@@ -22,7 +22,7 @@ import nbformat
 
 STUDENTS = Path(__file__).parent / "students"
 PREFIX = "demo_"
-LITERALS = {"ANSWERS": {}, "EXTRA_CELLS": {}, "MISSING": [], "BROKEN": []}
+LITERALS: dict = {"ANSWERS": {}, "EXTRA_CELLS": {}, "MISSING": [], "BROKEN": []}
 
 
 def is_demo(student):

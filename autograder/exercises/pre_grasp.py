@@ -185,110 +185,107 @@ READ_IN_ANOTHER_ORDER = (
 
 _back_to_front = _with_quaternion_read(ORDERS[2], copied=True)
 
-SHARED = tuple(
-    Misconception(*shared)
-    for shared in (
-        ("base-frame-offset", _moved(lambda p, R, offset: p + offset), *IN_THE_BASE),
-        ("wrong-sign", _moved(lambda p, R, offset: p - R @ offset), *OPPOSITE_SIDE),
-        (
-            "base-frame-offset;wrong-sign",
-            _moved(lambda p, R, offset: p - offset),
-            *together(IN_THE_BASE, OPPOSITE_SIDE),
-        ),
-        ("rotation-transposed", _moved(lambda p, R, offset: p + R.T @ offset), *TURNED_BACK),
-        (
-            "rotation-transposed;wrong-sign",
-            _moved(lambda p, R, offset: p - R.T @ offset),
-            *together(TURNED_BACK, OPPOSITE_SIDE),
-        ),
-        (
-            "trace-formula-only",
-            _moved(_right_position, lambda object_pose: trace_formula_guarded(matrix(object_pose))),
-            *BREAKS_AT_HALF_TURN,
-            _open("orientation", large_turn),
-        ),
-        (
-            "gimbal-lock",
-            _moved(_right_position, lambda object_pose: from_euler(plain_angles(matrix(object_pose)))),
-            "The orientation goes wrong where the object's x axis points straight up or down.",
-            "Roll and yaw cannot be told apart there, whatever the formula. Copy the object's quaternion instead.",
-            _open("orientation", x_axis_upright),
-        ),
-        (
-            "position-missing",
-            _moved(lambda p, R, offset: R @ offset),
-            "The answer is the offset alone, seen from the base's origin.",
-            "Where does the object itself come in?",
-        ),
-        (
-            "product-missing",
-            _moved(lambda p, R, offset: offset),
-            "The position is still the one in the object's frame.",
-            "Which product carries a point of the object's frame to the base frame?",
-        ),
-        (
-            "offset-missing",
-            _moved(lambda p, R, offset: p),
-            "The answer is at the object itself: the offset is not in it.",
-            "Move along the object's axes, starting where the object is.",
-        ),
-        (
-            "order-reversed",
-            _moved(lambda p, R, offset: R @ (p + offset)),
-            "The object's own position was turned too.",
-            "The position is already given in the base frame; only the offset is given in the object's.",
-        ),
-        (
-            "orientation-missing",
-            _moved(_right_position, lambda object_pose: (0, 0, 0, 0)),
-            *NO_ORIENTATION,
-        ),
-        (
-            "orientation-identity",
-            _moved(_right_position, lambda object_pose: (0, 0, 0, 1)),
-            "The orientation is 0, 0, 0, 1: aligned with the base, not with the object.",
-            "Relative to the object the answer is not turned; relative to the base the object itself is.",
-        ),
-        (
-            "rotation-applied-twice",
-            _moved(_right_position, _turned_twice),
-            "The object's rotation is in the orientation twice.",
-            "How is the answer turned relative to the object, before you go to the base frame?",
-        ),
-        (
-            "yaw-only",
-            _moved(lambda p, R, offset: p + _yaw(math.atan2(R[1, 0], R[0, 0])) @ offset),
-            *UPRIGHT_ONLY,
-            _open("position", x_axis_upright),  # where there is no yaw
-        ),
-        ("yaw-only", _yaw_of_quaternion, *UPRIGHT_ONLY),
-        *(
-            ("quaternion-order", wrong, *READ_IN_ANOTHER_ORDER)
-            for wrong in (
-                *(_with_quaternion_read(order, copied=False) for order in ORDERS),
-                *(_with_quaternion_read(order, copied=True) for order in ORDERS[:2]),
-                _back_to_front,
-            )
-        ),
-        *(
-            (
-                "quaternion-order",
-                _with_quaternion_written(order),
-                "The numbers of the quaternion were written in another order than ROS's.",
-                READ_IN_ANOTHER_ORDER[1],
-            )
-            for order in ORDERS
-        ),
-        *(
-            (
-                "quaternion-order;wrong-sign",
-                lambda object_pose, offset, wrong=wrong: wrong(object_pose, -np.asarray(offset)),
-                *together(READ_IN_ANOTHER_ORDER, OPPOSITE_SIDE),
-            )
-            for order in ORDERS
-            for wrong in (_with_quaternion_read(order, copied=True), _with_quaternion_read(order, copied=False))
-        ),
-    )
+SHARED: tuple[Misconception, ...] = (
+    Misconception("base-frame-offset", _moved(lambda p, R, offset: p + offset), *IN_THE_BASE),
+    Misconception("wrong-sign", _moved(lambda p, R, offset: p - R @ offset), *OPPOSITE_SIDE),
+    Misconception(
+        "base-frame-offset;wrong-sign",
+        _moved(lambda p, R, offset: p - offset),
+        *together(IN_THE_BASE, OPPOSITE_SIDE),
+    ),
+    Misconception("rotation-transposed", _moved(lambda p, R, offset: p + R.T @ offset), *TURNED_BACK),
+    Misconception(
+        "rotation-transposed;wrong-sign",
+        _moved(lambda p, R, offset: p - R.T @ offset),
+        *together(TURNED_BACK, OPPOSITE_SIDE),
+    ),
+    Misconception(
+        "trace-formula-only",
+        _moved(_right_position, lambda object_pose: trace_formula_guarded(matrix(object_pose))),
+        *BREAKS_AT_HALF_TURN,
+        _open("orientation", large_turn),
+    ),
+    Misconception(
+        "gimbal-lock",
+        _moved(_right_position, lambda object_pose: from_euler(plain_angles(matrix(object_pose)))),
+        "The orientation goes wrong where the object's x axis points straight up or down.",
+        "Roll and yaw cannot be told apart there, whatever the formula. Copy the object's quaternion instead.",
+        _open("orientation", x_axis_upright),
+    ),
+    Misconception(
+        "position-missing",
+        _moved(lambda p, R, offset: R @ offset),
+        "The answer is the offset alone, seen from the base's origin.",
+        "Where does the object itself come in?",
+    ),
+    Misconception(
+        "product-missing",
+        _moved(lambda p, R, offset: offset),
+        "The position is still the one in the object's frame.",
+        "Which product carries a point of the object's frame to the base frame?",
+    ),
+    Misconception(
+        "offset-missing",
+        _moved(lambda p, R, offset: p),
+        "The answer is at the object itself: the offset is not in it.",
+        "Move along the object's axes, starting where the object is.",
+    ),
+    Misconception(
+        "order-reversed",
+        _moved(lambda p, R, offset: R @ (p + offset)),
+        "The object's own position was turned too.",
+        "The position is already given in the base frame; only the offset is given in the object's.",
+    ),
+    Misconception(
+        "orientation-missing",
+        _moved(_right_position, lambda object_pose: (0, 0, 0, 0)),
+        *NO_ORIENTATION,
+    ),
+    Misconception(
+        "orientation-identity",
+        _moved(_right_position, lambda object_pose: (0, 0, 0, 1)),
+        "The orientation is 0, 0, 0, 1: aligned with the base, not with the object.",
+        "Relative to the object the answer is not turned; relative to the base the object itself is.",
+    ),
+    Misconception(
+        "rotation-applied-twice",
+        _moved(_right_position, _turned_twice),
+        "The object's rotation is in the orientation twice.",
+        "How is the answer turned relative to the object, before you go to the base frame?",
+    ),
+    Misconception(
+        "yaw-only",
+        _moved(lambda p, R, offset: p + _yaw(math.atan2(R[1, 0], R[0, 0])) @ offset),
+        *UPRIGHT_ONLY,
+        _open("position", x_axis_upright),  # where there is no yaw
+    ),
+    Misconception("yaw-only", _yaw_of_quaternion, *UPRIGHT_ONLY),
+    *(
+        ("quaternion-order", wrong, *READ_IN_ANOTHER_ORDER)
+        for wrong in (
+            *(_with_quaternion_read(order, copied=False) for order in ORDERS),
+            *(_with_quaternion_read(order, copied=True) for order in ORDERS[:2]),
+            _back_to_front,
+        )
+    ),
+    *(
+        Misconception(
+            "quaternion-order",
+            _with_quaternion_written(order),
+            "The numbers of the quaternion were written in another order than ROS's.",
+            READ_IN_ANOTHER_ORDER[1],
+        )
+        for order in ORDERS
+    ),
+    *(
+        Misconception(
+            "quaternion-order;wrong-sign",
+            lambda object_pose, offset, wrong=wrong: wrong(object_pose, -np.asarray(offset)),
+            *together(READ_IN_ANOTHER_ORDER, OPPOSITE_SIDE),
+        )
+        for order in ORDERS
+        for wrong in (_with_quaternion_read(order, copied=True), _with_quaternion_read(order, copied=False))
+    ),
 )
 
 

@@ -15,6 +15,7 @@ from transform_lab.judging.answers import is_right, parts_of
 from transform_lab.judging.comparison import frames_of
 from transform_lab.judging.diagnosis import error_of, open_parts_of
 from transform_lab.judging.kinds import KINDS
+from transform_lab.judging.plain import PlainCase, PlainExercise
 from transform_lab.judging.reading import Unfit
 
 PUBLIC_SEED = 24  # the cases students see; any other seed draws hidden ones
@@ -82,7 +83,7 @@ class Exercise:
             raise ValueError(f"{self.name}: credit {self.credit} does not fit an answer of kind {self.returns}")
 
 
-def key(exercise, seed):
+def key(exercise: Exercise, seed: int) -> PlainExercise:
     """The exercise with the cases drawn from `seed`, as the plain data that `transform_lab.judging.verdict.examine` takes."""
     cases = exercise.cases(np.random.default_rng(seed))
     return {
@@ -118,7 +119,7 @@ class Arguments:
         )
 
 
-def _case(exercise, case):
+def _case(exercise: Exercise, case: Case) -> PlainCase:
     args = [_rounded(codec.encode(arg)) for arg in case.args]
     kwargs = {name: _rounded(codec.encode(arg)) for name, arg in case.kwargs.items()}
     fresh = Arguments(args, kwargs).fresh

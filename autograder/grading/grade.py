@@ -9,32 +9,41 @@ import secrets
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import nbformat
+from transform_lab.judging.plain import PlainExercise
+from transform_lab.judging.verdict import Verdict
 
+from ..course import Course
 from ..exercises import EXERCISES, key
-from ..intake.restore import restore
+from ..intake.restore import Intake, restore
+from ..intake.submission import Submission
+from ..released import Released
 from ..sandbox import Limits, Sandbox
 from . import digests
-from .judge import judge, rows
+from .judge import Row, judge, rows
 from .public_example import public_cases
 from .records import RECORD, missing, told
+
+if TYPE_CHECKING:
+    from .marks import Marks
 
 
 @dataclass(frozen=True)
 class GradingRun:
     """What submissions are graded against: released notebooks, this run's hidden cases, the students' package."""
 
-    released: dict  # {notebook name: Released}
-    keys: dict  # {exercise: plain data}
+    released: dict[str, Released]  # by the notebook's name
+    keys: dict[str, PlainExercise]
     package: Path
     seed: int
     digest: str
     limits: Limits = Limits()
-    isolated: bool = True
-    public: dict = field(default_factory=dict)  # {exercise: plain data}: the cases of the students' own `check`
+    isolated: bool | str = True
+    public: dict[str, PlainExercise] = field(default_factory=dict)  # the cases of the students' own `check`
 
-    def sandbox(self, submission):
+    def sandbox(self, submission: Submission) -> Sandbox:
         """A Sandbox for one submission, with the files that its notebooks may import or read."""
         return Sandbox(self.package, submission.helpers, self.limits, self.isolated)
 
@@ -44,14 +53,20 @@ class Graded:
     """The result: a Row for each exercise, the graded notebooks as text, and what was odd, in words."""
 
     student: str
-    rows: list = field(default_factory=list)
-    notebooks: dict = field(default_factory=dict)  # {notebook name: JSON text}; none for a missing file
-    marks: dict = field(default_factory=dict)  # {notebook name: Marks}
-    problems: list = field(default_factory=list)
-    receipts: dict = field(default_factory=dict)  # {file name: text}, see submission.receipts
+    rows: list[Row] = field(default_factory=list)
+    notebooks: dict[str, str] = field(default_factory=dict)  # {notebook name: JSON text}; none for a missing file
+    marks: dict[str, "Marks"] = field(default_factory=dict)  # {notebook name: Marks}
+    problems: list[str] = field(default_factory=list)
+    receipts: dict[str, str] = field(default_factory=dict)  # {file name: text}, see submission.receipts
 
 
-def grading_run(course, seed, limits=Limits(), isolated=True, notebooks=None):
+def grading_run(
+    course: Course,
+    seed: int,
+    limits: Limits = Limits(),
+    isolated: bool | str = True,
+    notebooks: list[str] | None = None,
+) -> GradingRun:
     """The GradingRun of a course, with the hidden cases drawn from `seed` (for all notebooks, or those named)."""
     wanted = course.notebooks if notebooks is None else notebooks
     names = [name for notebook in wanted for name in course.notebooks[notebook].points]
@@ -62,12 +77,12 @@ def grading_run(course, seed, limits=Limits(), isolated=True, notebooks=None):
     return GradingRun(dict(course.notebooks), keys, course.package, seed, digest, limits, isolated, public)
 
 
-def new_seed():
+def new_seed() -> int:
     """A seed nobody can know before: hidden cases are drawn anew for each grading run."""
     return secrets.randbits(32)
 
 
-def grade_submission(submission, run):
+def grade_submission(submission: Submission, run: GradingRun) -> Graded:
     """Grade one student's submission: a Graded with a row for every exercise of the assignment."""
     from .marks import marks  # here, because it imports nbgrader, which takes longer than to check one student's files
 
@@ -87,7 +102,9 @@ def grade_submission(submission, run):
     return graded
 
 
-def grade_notebook(intake, released, run, sandbox, submission):
+def grade_notebook(
+    intake: Intake, released: Released, run: GradingRun, sandbox: Sandbox, submission: Submission
+) -> dict[str, Verdict]:
     """Judge one notebook: {exercise: Verdict}; its outputs, and its record in the metadata, are filled in.
 
     The record is what reports and feedback are made from, and tells what need not be graded again.

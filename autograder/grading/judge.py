@@ -5,16 +5,20 @@ exercise, and compares what comes back. So nothing a student redefines in the no
 """
 
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from types import MappingProxyType
 
 import nbformat
 from transform_lab.judging import panel
+from transform_lab.judging.plain import PlainExercise
 from transform_lab.judging.status import STATUSES, refuse_unknown
 from transform_lab.judging.verdict import Verdict, examine
 
-from ..sandbox import Ended
+from ..intake.restore import Intake
+from ..released import Released
+from ..sandbox import Ended, Sandbox
 from ..untrusted import safe
 from . import public_example
 
@@ -45,7 +49,13 @@ class Row:
         return self.misconception or ("" if self.status == "graded" else self.status)
 
 
-def judge(intake, released, keys, sandbox, public=MappingProxyType({})):
+def judge(
+    intake: Intake,
+    released: Released,
+    keys: Mapping[str, PlainExercise],
+    sandbox: Sandbox,
+    public: Mapping[str, PlainExercise] = MappingProxyType({}),
+) -> tuple[dict[str, Verdict], dict[str, str]]:
     """Fill in the outputs of `intake.notebook`; ({exercise: Verdict}, {exercise: example}).
 
     There is a verdict for each exercise of the notebook, and an example (see public_example) for wrong ones where one was found.
@@ -53,10 +63,11 @@ def judge(intake, released, keys, sandbox, public=MappingProxyType({})):
     keys: {exercise: plain data}, from autograder.exercises.key with the run's seed
     public: {exercise: plain data}, from public_example.public_cases
     """
-    examples = {}
+    examples: dict[str, str] = {}
     verdicts = {name: Verdict(name, status, says=STATUSES[status].means) for name, status in intake.statuses.items()}
     if set(verdicts) != set(released.points):
-        skip, deadline = set(), time.monotonic() + sandbox.limits.notebook
+        skip: set[int] = set()
+        deadline = time.monotonic() + sandbox.limits.notebook
         for _ in range(MOST_RESTARTS + 1):
             with sandbox.notebook(deadline) as process:
                 culprit = _run(intake, released, keys, process, verdicts, skip, public, examples)
@@ -73,7 +84,7 @@ def judge(intake, released, keys, sandbox, public=MappingProxyType({})):
     return verdicts, examples
 
 
-def rows(released, verdicts):
+def rows(released: Released, verdicts: Mapping[str, Verdict]) -> list[Row]:
     """The Rows of a judged notebook, in the order of its exercises."""
     return [
         Row(released.name, name, score(verdict, points), points, verdict.status, ";".join(verdict.misconceptions))
@@ -82,7 +93,7 @@ def rows(released, verdicts):
     ]
 
 
-def score(verdict, points):
+def score(verdict: Verdict, points: float) -> float:
     """Points to two decimals; all of them for a right solution alone."""
     return points if verdict.right else max(0.0, min(round(verdict.credit * points, 2), points - 0.01))
 

@@ -12,8 +12,8 @@ class Marks:
     scores: {cell: points, or None where a human has to grade}; comments: {cell: text or None}
     """
 
-    scores: dict = field(default_factory=dict)
-    comments: dict = field(default_factory=dict)
+    scores: dict[str, float | None] = field(default_factory=dict)
+    comments: dict[str, str | None] = field(default_factory=dict)
 
 
 def marks(notebook):
@@ -41,6 +41,6 @@ class CellGrade:
 class NotebookGrades:
     """What the gradebook holds of one notebook: {cell: CellGrade}, {cell: comment}, and the points that being late costs."""
 
-    cells: dict = field(default_factory=dict)
+    cells: dict[str, CellGrade] = field(default_factory=dict)
     comments: dict = field(default_factory=dict)
     penalty: float = 0.0

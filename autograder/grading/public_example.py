@@ -6,9 +6,11 @@ one of them, with the student's own answer to it, may be shown as `check` shows 
 
 import json
 import time
+from collections.abc import Callable
 
+from transform_lab.judging.plain import PlainExercise
 from transform_lab.judging.status import STATUSES, STOPPED
-from transform_lab.judging.verdict import compare
+from transform_lab.judging.verdict import Reply, Verdict, compare
 
 from ..untrusted import printable
 
@@ -30,7 +32,7 @@ def public_cases(key):
     }
 
 
-def find(verdict, exercise, call):
+def find(verdict: Verdict, exercise: PlainExercise, call: Callable[[list, dict], Reply]) -> str | None:
     """A public case that the function answers wrongly, as JSON text for the notebook's record; None without any.
 
     verdict: on the hidden cases; those of the failing family are tried first

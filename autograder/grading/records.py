@@ -11,13 +11,15 @@ from itertools import zip_longest
 
 from transform_lab.judging.verdict import Verdict
 
+from ..course import Course
 from ..exercises import EXERCISES
+from ..released import Released
 from .judge import Row
 
 RECORD = "transform_lab"  # the entry of an autograded notebook's metadata that holds its verdicts
 
 
-def recorded(course, student):
+def recorded(course: Course, student: str) -> dict[str, dict]:
     """{notebook: record} of what is already graded; a damaged or outdated record counts as not graded."""
     found = {}
     for name, released in course.notebooks.items():
@@ -97,6 +99,6 @@ def _words(name, says, hint, source):
     return str(says), str(hint)
 
 
-def missing(released):
+def missing(released: Released) -> list[Row]:
     """The Rows of a notebook that was not handed in."""
     return [Row(released.name, name, 0.0, points, "missing") for name, points in released.points.items()]

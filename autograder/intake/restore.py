@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 
 import nbformat
 
+from ..released import Released
 from ..untrusted import printable
 
 LARGEST = 20_000_000  # bytes of one notebook file; the released ones are below 100 kB, pictures included
@@ -23,14 +24,14 @@ class Intake:
     """notebook: ready to run; statuses: {exercise: "missing" or "unreadable"} for what cannot be graded."""
 
     notebook: nbformat.NotebookNode
-    statuses: dict = field(default_factory=dict)
-    problems: list = field(default_factory=list)
+    statuses: dict[str, str] = field(default_factory=dict)
+    problems: list[str] = field(default_factory=list)
 
-    def say(self, released, problem):
+    def say(self, released: Released, problem: str) -> None:
         self.problems.append(f"{released.name}.ipynb: {problem}.")
 
 
-def restore(content, released):
+def restore(content: bytes, released: Released) -> Intake:
     """The Intake of `content` (bytes of a submitted file), measured against the Released notebook of that name."""
     try:
         notebook = _parse(content)

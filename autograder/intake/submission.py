@@ -13,6 +13,7 @@ from pathlib import Path, PurePosixPath
 
 import dateutil.parser
 
+from ..course import Course
 from ..untrusted import printable
 from .restore import LARGEST
 
@@ -27,17 +28,17 @@ class Submission:
     """One student's files, {path relative to the assignment's folder: bytes}, and what is wrong with them."""
 
     student: str
-    files: dict
-    problems: tuple = ()
-    receipts: dict = field(default_factory=dict)  # see `receipts`
+    files: dict[str, bytes]
+    problems: tuple[str, ...] = ()
+    receipts: dict[str, str] = field(default_factory=dict)  # see `receipts`
 
     @property
-    def helpers(self):
+    def helpers(self) -> dict[str, bytes]:
         """The files that notebooks may import or read."""
         return {path: content for path, content in self.files.items() if not path.endswith(".ipynb")}
 
     @property
-    def digest(self):
+    def digest(self) -> str:
         """Changes when anything of the submission changes."""
         total = hashlib.sha256()
         for path, content in sorted(self.files.items()):
@@ -45,9 +46,11 @@ class Submission:
         return total.hexdigest()
 
 
-def submission_of(course, student, folder=None):
+def submission_of(course: Course, student: str, folder: Path | None = None) -> Submission:
     """The Submission in a folder (a path; None for submitted/STUDENT)."""
-    folder, files, problems = folder or course.submitted(student), {}, []
+    folder = folder or course.submitted(student)
+    files: dict[str, bytes] = {}
+    problems: list[str] = []
     for name in (f"{name}.ipynb" for name in course.notebooks):
         if not os.path.lexists(folder / name):
             problems.append(NOT_HANDED_IN.format(name))
@@ -56,7 +59,8 @@ def submission_of(course, student, folder=None):
         files[name] = content or b""  # where nothing can be read, the intake calls the notebook unreadable
         if problem:
             problems.append(f"{name}: {problem}.")
-    notebooks, room, folders = len(files), LARGEST_FILES, set()
+    notebooks, room = len(files), LARGEST_FILES
+    folders: set[str] = set()
     for path in _paths(folder, problems):
         relative = PurePosixPath(printable(path.relative_to(folder).as_posix()))
         name, above = str(relative), {str(parent) for parent in relative.parents}
@@ -74,13 +78,13 @@ def submission_of(course, student, folder=None):
         if problem:
             problems.append(f"{name}: {problem}.")
         else:
-            files[name] = content
+            files[name] = content or b""
             folders |= above
     known_by, problem = receipts(folder)
     return Submission(student, files, tuple(problems + [problem] if problem else problems), known_by)
 
 
-def receipts(folder):
+def receipts(folder: Path) -> tuple[dict[str, str], str | None]:
     """({file name: text} of what nbgrader knows a submission in `folder` by, what is wrong with it or None)
 
     timestamp.txt tells when it was handed in, submission_secret.txt is what its feedback is found by in the exchange;
@@ -120,7 +124,7 @@ def _paths(folder, problems):
             yield Path(here, name)
 
 
-def read(path, folder=None):
+def read(path: Path | str, folder: int | None = None) -> tuple[bytes | None, str | None]:
     """(the bytes of a regular file or None, what is wrong with it or None); follows no link, waits for nobody.
 
     folder: the descriptor of the open folder that `path` is relative to

@@ -231,8 +231,8 @@ class NotebookProcess:
             if not known or not isinstance(error, str) or not isinstance(printed, str):
                 raise codec.NotPlain("an unknown outcome")
         except codec.NotPlain:
-            ended = self._ended("killed", "its process gave an answer that the grader's own code never gives")
-            return Reply(ended.status, error=ended.reason)
+            forged = self._ended("killed", "its process gave an answer that the grader's own code never gives")
+            return Reply(forged.status, error=forged.reason)
         return Reply(outcome, reply.get("value"), reply.get("arguments"), printable(error[:300]), printed[:300])
 
     def _request(self, action, arguments, seconds):
