@@ -261,7 +261,7 @@ SHARED: tuple[Misconception, ...] = (
     ),
     Misconception("yaw-only", _yaw_of_quaternion, *UPRIGHT_ONLY),
     *(
-        ("quaternion-order", wrong, *READ_IN_ANOTHER_ORDER)
+        Misconception("quaternion-order", wrong, *READ_IN_ANOTHER_ORDER)
         for wrong in (
             *(_with_quaternion_read(order, copied=False) for order in ORDERS),
             *(_with_quaternion_read(order, copied=True) for order in ORDERS[:2]),

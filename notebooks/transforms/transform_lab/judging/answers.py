@@ -47,8 +47,8 @@ def _same_unfit(returns, unfit, one, other):
     try:
         parts_of(returns, other)
         return False
-    except Unfit as second:
-        if unfit.misconception != second.misconception:
+    except Unfit as other_unfit:
+        if unfit.misconception != other_unfit.misconception:
             return False
     try:
         first, second = _all_numbers(one), _all_numbers(other)

@@ -2,20 +2,22 @@
 
 import io
 import traceback
+from collections.abc import Callable
 from contextlib import redirect_stdout
 
 from . import codec
+from .plain import Plain
 from .verdict import Reply
 
 MOST_PRINTED = 200  # characters of what a function prints while it is checked
 
 
-def call(function, args, kwargs):
+def call(function: Callable, args: list[Plain], kwargs: dict[str, Plain]) -> Reply:
     """The Reply of `function` to plain arguments: fresh objects for each call, and what became of them after it."""
     return reply(function, [codec.decode(arg) for arg in args], {key: codec.decode(arg) for key, arg in kwargs.items()})
 
 
-def reply(function, args, kwargs):
+def reply(function: Callable, args: list, kwargs: dict) -> Reply:
     """The Reply of `function` to decoded arguments, which have to be fresh."""
     printed = io.StringIO()
     try:
@@ -37,7 +39,7 @@ def _raised_in(function, error):
     return step.tb_frame.f_code is getattr(function, "__code__", step.tb_frame.f_code)
 
 
-def one_line(error):
+def one_line(error: BaseException) -> str:
     """An exception in one line of bounded length, with the student's own line in which it came up, if there is one."""
     where = ""
     for step in traceback.extract_tb(error.__traceback__):

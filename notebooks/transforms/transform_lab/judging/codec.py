@@ -14,10 +14,12 @@ notebook. Whatever an object claims about itself, only these numbers reach the j
 """
 
 import math
+from typing import Any
 
 import numpy as np
 
 from .. import messages
+from .plain import Plain
 
 LARGEST_ARRAY = 1_000  # numbers; the largest right answer has 16
 LONGEST_LIST = 100
@@ -39,7 +41,7 @@ class NotPlain(ValueError):
     """What was received is not plain data of a permitted size."""
 
 
-def encode(value, depth=0):
+def encode(value: object, depth: int = 0) -> Plain:
     """Plain data for `value`, of bounded size; what has no plain form becomes `{"other": type name}`."""
     if type(value) is float:  # most of all there is
         return _number(value)
@@ -75,7 +77,7 @@ def _message(value):
     return None
 
 
-def decode(plain, depth=0):
+def decode(plain: Plain, depth: int = 0) -> Any:
     """The value that `plain` stands for: arrays as float64 (or bool), messages as those of `transform_lab`.
 
     Raises NotPlain for anything that `encode` cannot have written, so it is safe on bytes from an untrusted process.

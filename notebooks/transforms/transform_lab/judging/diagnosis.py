@@ -136,9 +136,10 @@ def _joined(found):
     return Diagnosis(ids, *together(*((one.says, one.hint) for one in found if one.says)))
 
 
-def together(*messages):
+def together(*messages: tuple[str, str]) -> tuple[str, str]:
     """(says, hint) of several mistakes, from the (says, hint) of each: the n-th line of both is about the n-th mistake."""
-    return tuple("\n".join(texts) for texts in zip(*dict.fromkeys(messages)))
+    says, hints = zip(*dict.fromkeys(messages))
+    return "\n".join(says), "\n".join(hints)
 
 
 def _fit(index, exercise, replies, outcomes):

@@ -12,11 +12,12 @@ from .answers import parts_of
 from .kinds import KINDS
 from .lines import labelled
 from .reading import Unfit
+from .verdict import Verdict
 
 COLOURS = {"right": "#1b7837", "wrong": "#d9690f", "waiting": "#888888"}  # of bar and mark, on white and on black
 
 
-def title(verdict):
+def title(verdict: Verdict) -> str:
     """One line: what is right, and what is not."""
     if verdict.right:
         return f"{verdict.exercise}: all right."
@@ -29,13 +30,13 @@ def title(verdict):
     return f"{verdict.exercise}: not right yet."
 
 
-def summary(verdict):
+def summary(verdict: Verdict) -> str:
     """What there is to say about an answer that is not right, in one line; nothing about one that is."""
     found = [f"[{', '.join(verdict.misconceptions)}]"] if verdict.misconceptions else []
     return " ".join([*found, *(says for says, _ in mistakes(verdict))])
 
 
-def mistakes(verdict):
+def mistakes(verdict: Verdict) -> list[tuple[str, str]]:
     """What is not right and what helps, [(says, hint), …], a pair for each mistake; of a right answer, []."""
     if verdict.right:
         return []
@@ -43,12 +44,12 @@ def mistakes(verdict):
     return [(says or title(verdict).partition(": ")[2], hint) for says, hint in pairs]
 
 
-def text(verdict, points=None, numbers=True):
+def text(verdict: Verdict, points: tuple[float, float] | None = None, numbers: bool = True) -> str:
     """The whole verdict in plain text, for terminals, screen readers and nbgrader."""
     return "\n".join([title(verdict), *_sentences(verdict, points), *_example(verdict, numbers)])
 
 
-def html(verdict, points=None, numbers=True):
+def html(verdict: Verdict, points: tuple[float, float] | None = None, numbers: bool = True) -> str:
     """The whole verdict in HTML; every text of the student's is escaped."""
     state = "right" if verdict.right else "wrong" if verdict.done else "waiting"
     mark = {"right": "✓", "wrong": "✗", "waiting": "…"}[state]

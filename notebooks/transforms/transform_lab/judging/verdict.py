@@ -2,25 +2,16 @@
 
 The same code serves the notebook (`check`, on the public cases of key.json) and the grader (hidden cases, the function
 called in another process), so a student and an instructor never see two opinions.
-
-An exercise, as `examine` takes it, is a dictionary of plain data:
-
-- `parameters`: the names of the function's parameters, a star before one that takes any number of arguments
-- `returns`: the kind of answer, one of transform_lab.judging.kinds.KINDS; `answer`: its name, such as "b_T_a"
-- `credit`: {part of the answer: what that part alone is worth}, as shares of the points; all parts are worth 1
-- `weights`: {family of cases: how much it counts}
-- `misconceptions`: [{"id", "says", "hint"}, …]
-- `cases`: [{"family", "args", "kwargs", "expected", "wrong"}, …], where `wrong` holds what each misconception would
-  answer: null where it happens to be right, {"raises": name of the exception} where it raises, {"any": parts of the
-  answer} where these may be anything
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from . import codec
 from .answers import parts_of
 from .diagnosis import constant, diagnose
 from .kinds import KINDS
+from .plain import Plain, PlainCase, PlainExercise
 from .reading import Unfit
 from .status import refuse_unknown
 
@@ -32,8 +23,8 @@ class Reply:
     """What came of one call: `outcome` is "returned", "raised", "not done", "undefined", "timeout" or "killed"."""
 
     outcome: str
-    value: object = None  # the answer, as plain data
-    arguments: object = None  # the positional and keyword arguments after the call, as plain data: [list, dict]
+    value: Plain = None  # the answer, as plain data
+    arguments: Plain = None  # the positional and keyword arguments after the call, as plain data: [list, dict]
     error: str = ""  # the student's own error, or why the call had to be stopped; in one line
     printed: str = ""  # the beginning of what it printed
 
@@ -49,7 +40,7 @@ class Outcome:
     mutated: bool = False  # the call changed its arguments, which costs the case
 
     @property
-    def right(self):
+    def right(self) -> bool:
         return self.answered and not self.mutated
 
 
@@ -66,15 +57,15 @@ class Verdict:
     status: str = "graded"
     credit: float = 0.0
     done: bool = True  # False for a stub that nobody has filled in
-    misconceptions: tuple = ()
+    misconceptions: tuple[str, ...] = ()
     says: str = ""  # what the answer shows
     hint: str = ""  # what helps
-    parts: dict = field(default_factory=dict)  # part of the answer: number of cases in which it is right
+    parts: dict[str, int] = field(default_factory=dict)  # part of the answer: number of cases in which it is right
     cases: int = 0
     returns: str = ""  # the kind of answer
     wanted: str = ""  # the answer's name, such as "b_T_a"
-    parameters: tuple = ()  # names of the function's parameters, to show a case by
-    failing: dict | None = None  # the first case with a wrong answer, or none
+    parameters: tuple[str, ...] = ()  # names of the function's parameters, to show a case by
+    failing: PlainCase | None = None  # the first case with a wrong answer, or none
     answer: object = None  # the student's answer to it, decoded
     error: str = ""  # or the error that was raised instead
 
@@ -82,11 +73,11 @@ class Verdict:
         refuse_unknown(self.status)
 
     @property
-    def right(self):
+    def right(self) -> bool:
         return self.credit == 1.0
 
 
-def examine(name, exercise, call):
+def examine(name: str, exercise: PlainExercise, call: Callable[[list, dict], Reply]) -> Verdict:
     """The Verdict on the function that `call(args, kwargs) -> Reply` calls, over all cases of `exercise`."""
     cases, returns = exercise["cases"], exercise["returns"]
     replies = []
@@ -119,7 +110,7 @@ def examine(name, exercise, call):
     return verdict
 
 
-def _unfinished(name, reply, case):
+def _unfinished(name: str, reply: Reply, case: PlainCase) -> Verdict:
     if reply.outcome == "not done":
         return Verdict(name, "error", done=False, says="Not done yet.")
     if reply.outcome == "undefined":
@@ -133,7 +124,7 @@ def _unfinished(name, reply, case):
     return Verdict(name, "killed", says=says, hint=hint, failing=case)
 
 
-def compare(returns, case, reply):
+def compare(returns: str, case: PlainCase, reply: Reply) -> Outcome:
     """The Outcome of one case."""
     if reply.outcome == "raised":
         return Outcome(problem=("", reply.error))
@@ -148,11 +139,11 @@ def compare(returns, case, reply):
     return Outcome(good, len(good) == len(parts), got, mutated=mutated)
 
 
-def _credit(exercise, outcomes):
+def _credit(exercise: PlainExercise, outcomes: list[Outcome]) -> float:
     """Each family of cases counts by its weight; within it, a part earns its share when it is right in every case."""
     if all(outcome.right for outcome in outcomes):
         return 1.0
-    families = {}
+    families: dict[str, list[Outcome]] = {}
     for case, outcome in zip(exercise["cases"], outcomes):
         families.setdefault(case["family"], []).append(outcome)
     earned = 0.0

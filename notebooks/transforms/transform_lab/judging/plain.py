@@ -1,0 +1,49 @@
+"""An exercise as plain data: what `key.json` holds of it, and what the judge draws anew for each run. See codec.py."""
+
+from typing import Any, NotRequired, TypedDict
+
+Plain = Any  # what JSON can hold, in the forms of codec.py
+
+
+class PlainCase(TypedDict):
+    """The arguments of one call, with the right answer to them and the wrong ones.
+
+    family: which kind of case it is, in a student's words
+    wrong: what each misconception of the exercise would answer: null where it happens to be right, {"raises": name of the
+        exception} where it raises, {"any": parts of the answer} where these may be anything; left out where only right
+        answers are told (public_example.py)
+    """
+
+    family: str
+    args: list[Plain]
+    kwargs: dict[str, Plain]
+    expected: Plain
+    wrong: NotRequired[list[Plain]]
+
+
+class PlainMisconception(TypedDict):
+    """id: as verdicts.csv has it; says: what the answer shows; hint: what helps"""
+
+    id: str
+    says: str
+    hint: str
+
+
+class PlainExercise(TypedDict):
+    """One exercise with its cases.
+
+    parameters: the names of the function's parameters, a star before one that takes any number of arguments
+    returns: the kind of answer, a key of kinds.KINDS; answer: its name, such as "b_T_a"
+    credit: {part of the answer: what that part alone is worth}, as shares of the points; all parts are worth 1
+    weights: {family of cases: how much it counts}
+    points: what it is worth in its notebook; in key.json alone
+    """
+
+    parameters: list[str]
+    returns: str
+    answer: str
+    credit: dict[str, float]
+    weights: dict[str, float]
+    misconceptions: list[PlainMisconception]
+    cases: list[PlainCase]
+    points: NotRequired[float]
