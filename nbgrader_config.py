@@ -22,24 +22,27 @@ c.CourseDirectory.release_directory = "notebooks"
 c.CourseDirectory.course_id = "transforms"
 
 # Submitted notebooks are mended on the way in, so that a broken one stops neither its student's others nor the batch.
-c.Autograde.exporter_class = "autograder.plugin.Exporter"
+c.Autograde.exporter_class = "autograder.bridge.plugin.Exporter"
 c.Autograde.sanitize_preprocessors = [
     "nbgrader.preprocessors.OverwriteCells",
     "nbgrader.preprocessors.CheckCellMetadata",
 ]
 # In place of nbgrader's Execute, our judge: a sandbox for the notebook, verdicts from outside its process.
 c.Autograde.autograde_preprocessors = [
-    "autograder.plugin.Judge",
+    "autograder.bridge.plugin.Judge",
     "nbgrader.preprocessors.LimitOutput",
     "nbgrader.preprocessors.SaveAutoGrades",
     "nbgrader.preprocessors.AssignLatePenalties",
     "nbgrader.preprocessors.CheckCellMetadata",
 ]
 # What students write is shown in feedback and formgrader without scripts and without anything from elsewhere.
-c.HTMLExporter.filters = {"markdown2html": "autograder.pages.markdown2html"}
+c.HTMLExporter.filters = {"markdown2html": "autograder.pages.markdown.markdown2html"}
 # Students write into the exchange: what they put there neither fetches files of the instructor's nor stops the others.
-c.ExchangeFactory.collect = "autograder.exchange.Collect"
-c.ExchangeFactory.release_feedback = "autograder.exchange.ReleaseFeedback"
+c.ExchangeFactory.collect = "autograder.intake.exchange.Collect"
+c.ExchangeFactory.release_feedback = "autograder.intake.exchange.ReleaseFeedback"
 # Feedback pages that need no network, say a mistake in numbers and frames, and stay small.
-c.GenerateFeedback.exporter_class = "autograder.pages.Feedback"
-c.GenerateFeedback.preprocessors = ["autograder.pages.Grades", "nbconvert.preprocessors.CSSHTMLHeaderPreprocessor"]
+c.GenerateFeedback.exporter_class = "autograder.pages.exporter.Feedback"
+c.GenerateFeedback.preprocessors = [
+    "autograder.pages.exporter.FetchGrades",
+    "nbconvert.preprocessors.CSSHTMLHeaderPreprocessor",
+]

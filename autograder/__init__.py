@@ -7,10 +7,12 @@ the path here, once for every way into the grader.
 import sys
 from pathlib import Path
 
-_SOURCE = str(Path(__file__).resolve().parent.parent / "source" / "transforms")
+ASSIGNMENT = "transforms"  # as nbgrader calls it, and its folders in source/, notebooks/, submitted/STUDENT/, …
+
+_SOURCE = str(Path(__file__).resolve().parent.parent / "source" / ASSIGNMENT)
 if _SOURCE not in sys.path:
     sys.path.insert(0, _SOURCE)
 
 # nbformat imports jsonschema, and jsonschema this one, which takes a second to build a grammar of international web
 # addresses. No notebook's schema asks for them, and jsonschema does without.
-sys.modules.setdefault("rfc3987_syntax", None)
+sys.modules.setdefault("rfc3987_syntax", None)  # type: ignore[arg-type]  # None: it cannot be imported

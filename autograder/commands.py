@@ -13,7 +13,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from .course import ASSIGNMENT, Course, CourseError, replace
+from .course import ASSIGNMENT, Course, CourseError
+from .files import replace
 
 console = Console(highlight=False, soft_wrap=True)
 errors = Console(stderr=True, highlight=False, soft_wrap=True)
@@ -50,6 +51,8 @@ def run(arguments):
     if options.extra and options.command not in (lab, test):
         parser.error(f"unrecognized arguments: {' '.join(options.extra)}")
     try:
+        if options.command is not test:
+            course()  # where there is none, the commands' own imports would say so with a traceback
         return options.command(options)
     except CourseError as error:
         errors.print(str(error), markup=False)
@@ -119,15 +122,22 @@ def _parser():
         metavar="PATH",
         help="the folder to put both into (default: this one), or a file named *.zip for that of the notebooks alone",
     )
-    sub = add("export", export, "write the gradebook's points as CSV: as a table, or as Canvas or Moodle imports them")
+    sub = add("export", export, "write the gradebook's points as CSV: as a table, or as an LMS imports them")
     sub.add_argument(
-        "--format", choices=("plain", "canvas", "moodle"), default="plain", help="columns (default: plain)"
+        "--format",
+        default="plain",
+        metavar="NAME",
+        help="columns: plain, or those that an LMS imports, such as canvas (default: plain)",
     )
     sub.add_argument(
-        "--column", metavar="NAME", default=ASSIGNMENT, help=f"the assignment's name in the LMS (default: {ASSIGNMENT})"
+        "--column",
+        metavar="NAME",
+        default=ASSIGNMENT,
+        help=f"the assignment's name in the LMS (default: {ASSIGNMENT})",
     )
     sub.add_argument("--output", type=Path, default=Path("-"), help="a file (default: print)")
-    add("test", test, "run all tests; other options are passed on to pytest")
+    sub = add("test", test, "run the quick tests; other options are passed on to pytest, and choose among all tests")
+    sub.add_argument("--all", action="store_true", help="all tests: in sandboxes, in a browser, of whole classes, too")
     return parser
 
 
@@ -162,7 +172,7 @@ def lab(options):
 
 
 def release(options):
-    from .release import release as make
+    from .handout.release import release as make
 
     changes = make(course())
     for change in changes:
@@ -172,7 +182,7 @@ def release(options):
 
 
 def package(options):
-    from .package import for_gradescope, for_students, write
+    from .handout.package import for_gradescope, for_students, write
 
     here = course()
     folder, only = options.output, options.output.suffix == ".zip" and not options.output.is_dir()
@@ -230,8 +240,8 @@ def grade(options):
 
     here = course()
     ForkServer.serving(here.package)  # loads while the rest is loaded here
-    from . import gradebook  # noqa: F401 (takes as long as the fork server's start)
-    from .workers import Cluster
+    from .bridge import gradebook  # noqa: F401 (takes as long as the fork server's start)
+    from .grading.workers import Cluster
 
     students = here.students()
     chosen = list(dict.fromkeys(options.students)) or students
@@ -272,15 +282,16 @@ def _protection(here, unsafe, cluster=None):
 
 def _grade(here, students, protected, seed=None, jobs=os.cpu_count(), force=False, with_feedback=True, cluster=None):
     """Grade, record, write feedback and report; returns the students who could not be graded."""
-    from . import report
-    from .classroom import grade_class
-    from .gradebook import Writer
-    from .grading import assignment, new_seed
+    from .bridge.gradebook import Writer
+    from .grading.classroom import grade_class
+    from .grading.grade import grading_run, new_seed
+    from .pages import report
 
     seed = new_seed() if seed is None else seed
     failed, fresh, counts = [], [], Counter()
     with here.one_grader_at_a_time(_busy), Writer(here) as writer:
-        against = assignment(here, seed, isolated=protected)
+        writer.can_record()
+        against = grading_run(here, seed, isolated=protected)
         with _progress() as progress:
             bar = progress.add_task("grading", total=len(students), counts="")
             for student, graded, problem in grade_class(here, students, against, writer, jobs, force, cluster):
@@ -317,7 +328,7 @@ def _grade(here, students, protected, seed=None, jobs=os.cpu_count(), force=Fals
 
 
 def _write_feedback(here, grades, jobs):
-    from . import feedback
+    from .pages import feedback
 
     wanted = {student: told for student, told in grades.items() if not feedback.is_complete(here, student, told)}
     with _progress() as progress:
@@ -363,16 +374,15 @@ def _show_class(found, students):
         points = f"{sum(row.score for row in rows):g} of {sum(row.max_score for row in rows):g}"
         said = {}
         for row in rows:
-            what = row.misconception or row.status
-            if what != "graded":
-                said.setdefault(what, []).append(row.exercise)
+            if row.remark:
+                said.setdefault(row.remark, []).append(row.exercise)
         _add_row(table, student, points, "; ".join(f"{what} ({', '.join(names)})" for what, names in said.items()))
     console.print(table)
 
 
 def report(options):
-    from . import report
-    from .gradebook import Writer
+    from .bridge.gradebook import Writer
+    from .pages import report
 
     here = course()
     with Writer(here) as writer:
@@ -383,10 +393,11 @@ def report(options):
 
 
 def demo(options):
-    from . import report, sandbox
+    from . import sandbox
+    from .bridge.gradebook import Writer
     from .demo import enroll, is_demo
-    from .gradebook import Writer
-    from .release import release as make
+    from .handout.release import release as make
+    from .pages import report
 
     here = course()
     if options.remove:
@@ -422,9 +433,9 @@ def check(options):
     here = course()
     ForkServer.serving(here.package)  # loads while the rest is loaded here
 
-    from transform_lab import panel
+    from transform_lab.judging import panel
 
-    from .check import check_files, markdown, points
+    from .grading.one_student import check_files, markdown, points
 
     protected = _protection(here, options.unsafe_no_sandbox)
     found, refused, said = check_files(here, options.notebooks, options.seed, protected)
@@ -453,12 +464,12 @@ def doctor(options):
 
 
 def export(options):
-    from . import export
-    from .gradebook import Writer
+    from .bridge.gradebook import Writer
+    from .pages import export
 
     here = course()
     with Writer(here) as writer:
-        found = export.collect(writer.gradebook)
+        found = export.totals(writer.gradebook)
         text = export.text(here, writer.gradebook, found, options.format, options.column)
         lines = list(export.remarks(found, options.format))
     if str(options.output) == "-":
@@ -474,5 +485,6 @@ def export(options):
 
 
 def test(options):
-    everything = ["--numprocesses", str(os.cpu_count()), "--dist", "loadfile"]
-    return subprocess.call([sys.executable, "-m", "pytest", *(options.extra or everything)])
+    tier = ["--all"] if options.all else []
+    spread = ["--numprocesses", str(os.cpu_count()), "--dist", "loadfile", "--no-loadscope-reorder"]
+    return subprocess.call([sys.executable, "-m", "pytest", *tier, *(options.extra or spread)])

@@ -1,30 +1,13 @@
-"""Where things lie in a course, and what was released: the facts that every command starts from."""
+"""Where things lie in a course: the facts that every command starts from."""
 
-import hashlib
 import os
-import re
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-ASSIGNMENT = "transforms"
-
-
-def replace(path, text):
-    """Write a file in one step: whoever reads it finds the old text or the new one, and never half of it."""
-    fresh = path.with_name(f".{path.name}.new")
-    try:
-        fresh.write_text(text, encoding="utf-8")
-        os.replace(fresh, path)
-    except OSError:
-        fresh.unlink(missing_ok=True)
-        raise
-
-
-def without_points(heading):
-    """A heading without the "(2 points, …)" at its end."""
-    return re.sub(r" \(\d+ points?\b.*\)$", "", heading)
+from . import ASSIGNMENT
+from .released import NotANotebook, read
 
 
 class CourseError(Exception):
@@ -39,10 +22,22 @@ class Course:
 
     def __post_init__(self):
         if not self.source.is_dir():
-            raise CourseError(
-                f"{self.root} is no course folder: there is no source/{ASSIGNMENT} in it. "
-                "Change to the folder that holds nbgrader_config.py and run the command again."
+            raise CourseError(self._no_source())
+
+    def _no_source(self):
+        """Why there is no source/transforms, as far as that can be seen."""
+        others = sorted(path.parent.name for path in self.root.glob("source/*/transform_lab"))
+        if others:
+            return (
+                f"The assignment's folder has to be called {ASSIGNMENT}, as the released one, those in "
+                f"submitted/STUDENT/ and the gradebook's entry are. Rename it back: `mv source/{others[0]} source/{ASSIGNMENT}`. "
+                "Names that are yours to choose: the course's in nbgrader's exchange, c.CourseDirectory.course_id in "
+                "nbgrader_config.py, and the LMS's name for the points, `export --column`."
             )
+        return (
+            f"{self.root} is no course folder: there is no source/{ASSIGNMENT} in it. "
+            "Change to the folder that holds nbgrader_config.py and run the command again."
+        )
 
     @property
     def source(self):
@@ -122,63 +117,9 @@ class Course:
                 f"{ASSIGNMENT} was never released: there are no notebooks in notebooks/{ASSIGNMENT}. "
                 "Run `python3 -m autograder release` first."
             )
-        return {path.stem: Released(path.stem, path.read_text(encoding="utf-8")) for path in paths}
-
-
-@dataclass(frozen=True)
-class Released:
-    """A notebook as students got it: the measure for what they hand in."""
-
-    name: str
-    text: str
-
-    @cached_property
-    def notebook(self):
-        import nbformat  # here and below: a command that only starts another program need not wait for these
-
-        return nbformat.reads(self.text, as_version=4)
-
-    @cached_property
-    def cells(self):
-        """The cells nbgrader knows about, {grade_id: cell}, in order."""
-        return {cell.metadata.nbgrader.grade_id: cell for cell in self.notebook.cells if "nbgrader" in cell.metadata}
-
-    @cached_property
-    def points(self):
-        """The exercises in this notebook, {name: points}, in order."""
-        from .exercises import EXERCISES
-
-        return {
-            name: float(cell.metadata.nbgrader.points)
-            for name, cell in self.cells.items()
-            if cell.metadata.nbgrader.grade and name in EXERCISES
-        }
-
-    @cached_property
-    def questions(self):
-        """What a human grades in this notebook, {name: points}, in order."""
-        graded = {name: cell.metadata.nbgrader for name, cell in self.cells.items() if cell.metadata.nbgrader.grade}
-        return {name: float(nbgrader.points) for name, nbgrader in graded.items() if name not in self.points}
-
-    def section(self, name):
-        """The heading (`## …`, as it is read) of the part of the notebook that leads to an exercise or a question."""
-        found = ""
-        for cell in self.notebook.cells:
-            if cell.metadata.get("nbgrader", {}).get("grade_id") in (name, f"{name}-solution"):
-                return found
-            if cell.cell_type == "markdown":
-                headings = re.findall(r"^## (?!Exercise)(.+)", cell.source, re.MULTILINE)
-                found = headings[-1].replace("`", "").strip() if headings else found
-        return ""
-
-    @property
-    def title(self):
-        """The notebook's first heading."""
-        cells = (cell.source for cell in self.notebook.cells if cell.cell_type == "markdown")
-        return next(
-            (found[1] for found in map(re.compile("^# +(.*?) *$", re.MULTILINE).search, cells) if found), self.name
-        )
-
-    @property
-    def digest(self):
-        return hashlib.sha256(self.text.encode()).hexdigest()
+        try:
+            return {path.stem: read(path) for path in paths}
+        except NotANotebook as error:
+            raise CourseError(
+                f"notebooks/{ASSIGNMENT}/{error}. Run `python3 -m autograder release`: it makes that folder anew."
+            ) from None

@@ -5,7 +5,7 @@ import sys
 
 from . import sandbox
 from .sandbox import Limits
-from .sandbox.bubblewrap import FOLDER
+from .sandbox.bounds import FOLDER
 
 
 def examine(course):

@@ -42,10 +42,15 @@ def ensure(root, arguments):
     os.execv(python, [str(python), "-m", "autograder", *arguments])
 
 
+def pinned(requirements):
+    """{package: version} of a file of pip requirements."""
+    return dict(re.findall(r"^([\w.-]+)==([\w.]+)", requirements.read_text(encoding="utf-8"), re.MULTILINE))
+
+
 def lacking(requirements):
     """The requirements that this interpreter does not have at their version."""
     absent = []
-    for name, version in re.findall(r"^([\w.-]+)==([\w.]+)", requirements.read_text(encoding="utf-8"), re.MULTILINE):
+    for name, version in pinned(requirements).items():
         try:
             found = metadata.version(name)
         except metadata.PackageNotFoundError:

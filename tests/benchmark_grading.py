@@ -25,12 +25,15 @@ import psutil
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
-from conftest import MADE_AT_RUN_TIME  # noqa: E402
-from test_nbgrader import marks, without_plugin  # noqa: E402
+from support import (  # noqa: E402
+    MADE_AT_RUN_TIME,  # noqa: E402
+    marks,
+    without_plugin,
+)
 
+from autograder.bridge.gradebook import Writer  # noqa: E402
 from autograder.course import ASSIGNMENT, Course  # noqa: E402
-from autograder.gradebook import Writer  # noqa: E402
-from autograder.release import release  # noqa: E402
+from autograder.handout.release import release  # noqa: E402
 
 os.environ["TRANSFORM_LAB_GRADING"] = "1"
 OURS = [sys.executable, "-m", "autograder", "grade", "--no-feedback"]
@@ -142,9 +145,10 @@ def compare(folder, students, stock_students, growth):
 
 def profile(folder, times=10):
     """Where the time of one submission goes, by wall clock, one at a time."""
-    from autograder import grading, judge
+    from autograder.grading import grade as grading
+    from autograder.grading import judge
+    from autograder.intake.submission import submission_of
     from autograder.sandbox import host
-    from autograder.submission import collect
 
     spent = {}
 
@@ -161,9 +165,9 @@ def profile(folder, times=10):
         setattr(place, attribute, wrapper)
 
     course = make_class(folder / "profiled", 1)
-    against = grading.assignment(course, 1)
+    against = grading.grading_run(course, 1)
     with Writer(course) as writer:
-        grading.grade_submission(collect(course, "student_0000"), against)  # the fork server loads
+        grading.grade_submission(submission_of(course, "student_0000"), against)  # the fork server loads
         timed("intake of notebooks", grading, "restore")
         timed("start of sandboxes", host.NotebookProcess, "__init__")
         timed("end of sandboxes", host.NotebookProcess, "__exit__")
@@ -172,7 +176,7 @@ def profile(folder, times=10):
         timed("calls and comparison", judge, "examine")
         start = time.perf_counter()
         for _ in range(times):
-            submission = collect(course, "student_0000")
+            submission = submission_of(course, "student_0000")
             graded = grading.grade_submission(submission, against)
             before = time.perf_counter()
             writer.record(graded)
@@ -191,9 +195,13 @@ def main():
     parser.add_argument("--nbgrader-students", type=int, default=6, help="for stock nbgrader (0: leave it out)")
     parser.add_argument("--growth", action="store_true", help="grade a tenth of the students first")
     parser.add_argument("--profile", action="store_true", help="only tell where the time of one submission goes")
+    parser.add_argument("--smallest", action="store_true", help="do all of it with one student, to see that it works")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="benchmark-") as folder:
-        if options.profile:
+        if options.smallest:
+            compare(Path(folder), 1, 1, growth=False)
+            profile(Path(folder), times=1)
+        elif options.profile:
             profile(Path(folder))
         else:
             compare(Path(folder), options.students, options.nbgrader_students, options.growth)

@@ -3,10 +3,9 @@
 Prints, for each kind of figure, the size of its HTML (goal: at most 350 kB) and the median time to make it once the
 modules are imported (goal: at most 300 ms); how many changes a second the kernel can turn into messages; and, with
 Chromium, how many a second arrive and are drawn while a slider is dragged in JupyterLab (goal: at least 25; here the
-graphics are computed without a graphics card).
+graphics are computed without a graphics card). `--smallest` measures everything for a moment, to see that it works.
 """
 
-import shutil
 import statistics
 import sys
 import tempfile
@@ -30,11 +29,12 @@ from transform_lab import (
     animate_rotation,
     tft,
 )
-from transform_lab.commands import block, changes, properties
-from transform_lab.drawing import draw
-from transform_lab.page import labels
+from transform_lab.viewing.drawing import draw
+from transform_lab.viewing.meshcat_commands import block, changes, properties
+from transform_lab.viewing.page import labels
 
-REPEATS = 7
+SMALLEST = "--smallest" in sys.argv
+REPEATS = 1 if SMALLEST else 7
 STEP = np.array([[0.0, -1, 0, 1], [1, 0, 0, 0], [0, 0, 1, 0.2], [0, 0, 0, 1]])
 OBJECT = Pose(Point(0.6, -0.1, 0.7), Quaternion(0, 0, 0.38268343, 0.92387953))
 STOP = Pose(Point(0.529289, -0.170711, 0.7), Quaternion(0, 0, 0.38268343, 0.92387953))
@@ -73,7 +73,7 @@ def figures():
     }
 
 
-def kernel_rate(seconds=2):
+def kernel_rate(seconds):
     """How many changes a second are turned into messages: one frame of five turns."""
     viewer, count, start = chain(), 0, time.perf_counter()
     sent = properties(draw(viewer, 0.5).nodes)
@@ -86,21 +86,28 @@ def kernel_rate(seconds=2):
     return count / (time.perf_counter() - start)
 
 
-def browser_rate():
+def browser_rate(seconds):
     """How many changes a second are drawn in JupyterLab while the slider of notebook 1 is dragged."""
+    from jupyter_lab import Opened, Server
     from playwright.sync_api import sync_playwright
-    from test_browser import FLAGS, Opened, Server
+    from support import CHROMIUM_FLAGS, PATIENCE, SOFTWARE_WEBGL, chromium_here
 
-    server = Server(Path(tempfile.mkdtemp()) / "work")
+    if not chromium_here():
+        return None
+    temporary = tempfile.TemporaryDirectory()
+    server = Server(Path(temporary.name) / "work")
     try:
         with sync_playwright() as playwright:
-            browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
+            browser = playwright.chromium.launch(
+                executable_path=chromium_here(), args=[*CHROMIUM_FLAGS, *SOFTWARE_WEBGL]
+            )
             page = browser.new_page(viewport={"width": 1100, "height": 900})
+            page.set_default_timeout(1000 * PATIENCE)
             notebook = Opened(page, server, "1_rotation")
             notebook.run_all()
             scene = notebook.scene_with("input[name=degrees]")
             return scene.evaluate(
-                """() => new Promise(done => {
+                """most => new Promise(done => {
                   const slider = document.querySelector("input[name=degrees]"), start = performance.now();
                   let heard = 0, at = 0;
                   addEventListener("message", event => heard += event.data?.from === "kernel");
@@ -108,12 +115,14 @@ def browser_rate():
                     slider.value = ++at % (+slider.max + 1);
                     slider.dispatchEvent(new Event("input"));
                     const seconds = (performance.now() - start) / 1000;
-                    seconds < 5 ? setTimeout(drag, 8) : done(heard / seconds);
+                    seconds < most ? setTimeout(drag, 8) : done(heard / seconds);
                   })();
-                })"""
+                })""",
+                seconds,
             )
     finally:
         server.stop()
+        temporary.cleanup()
 
 
 if __name__ == "__main__":
@@ -128,5 +137,7 @@ if __name__ == "__main__":
         table.add_row(name, f"{size / 1000:.0f}", f"{statistics.median(times):.0f}")
     console = Console()
     console.print(table)
-    console.print(f"changes a second, made by the kernel: {kernel_rate():.0f}")
-    console.print(f"changes a second, drawn while a slider is dragged in JupyterLab: {browser_rate():.0f}")
+    console.print(f"changes a second, made by the kernel: {kernel_rate(0.1 if SMALLEST else 2):.0f}")
+    rate = browser_rate(1 if SMALLEST else 5)
+    seen = f"{rate:.0f}" if rate is not None else "not measured, for there is no Chromium"
+    console.print(f"changes a second, drawn while a slider is dragged in JupyterLab: {seen}")

@@ -1,5 +1,6 @@
-"""What tests share: courses to work in, and the rule that nothing is skipped where CI has to run it."""
+"""What tests share: their tiers, the tools of this machine, and courses to work in."""
 
+import fcntl
 import os
 import shutil
 import subprocess
@@ -8,23 +9,113 @@ import tempfile
 from pathlib import Path
 
 import pytest
+from support import (
+    BROWSERS,
+    CHROMIUM_FLAGS,
+    MADE_AT_RUN_TIME,
+    PATIENCE,
+    ROOT,
+    SOFTWARE_WEBGL,
+    chromium_here,
+    lacking,
+    path_without,
+)
 
-ROOT = Path(__file__).resolve().parent.parent
-MADE_AT_RUN_TIME = (".git", ".venv", "submitted", "autograded", "feedback", "reports", "gradebook.db", "__pycache__")
-os.environ["PATH"] = f"{Path(os.sys.prefix, 'bin')}{os.pathsep}{os.environ['PATH']}"  # nbgrader runs alembic by name
+# Tests that use one of these fixtures, by themselves or through another, are left to `test --all`; all others are quick.
+TIERS = {"sandboxed": "sandbox", "open_python": "sandbox", "chromium": "browser", "slow": "slow"}
+TOOLS = {"sandbox": ["bwrap"], "browser": BROWSERS}  # programs that no other tier finds
+
+
+def pytest_addoption(parser):
+    parser.addoption("--all", action="store_true", help="all tests, and not the quick ones alone")
+
+
+def pytest_configure(config):
+    """What is asked for by name is run, quick or not."""
+    if not hasattr(config, "workerinput"):  # a worker has the options of the process that started it, --all among them
+        named = config.args_source is config.ArgsSource.ARGS
+        config.option.all |= named or any(map(config.getoption, ("keyword", "markexpr", "lf")))
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(config, items):
+    """Mark each test with its tiers; leave the quick ones alone, or put them last, where they fill what time is left."""
+    for item in items:
+        for fixture in TIERS.keys() & set(item.fixturenames):
+            item.add_marker(TIERS[fixture])
+    quick = [item for item in items if not tiers(item)]
+    others = [item for item in items if tiers(item)]
+    if not config.option.all:
+        config.hook.pytest_deselected(items=others)
+        others = []
+    items[:] = others + quick
+
+
+def tiers(item):
+    """The tiers of a test, by its fixtures or, for one of several parameters, by a mark; of a quick one, none."""
+    return {mark.name for mark in item.iter_markers()} & set(TIERS.values())
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item):
+    """A test finds the tools of its own tiers on its PATH and no others, on any machine: one that lacks the fixture fails."""
+    hidden = [tool for tier, tools in TOOLS.items() if tier not in tiers(item) for tool in tools]
+    os.environ["PATH"] = path_without(*hidden)
 
 
 @pytest.fixture(scope="session")
-def released(tmp_path_factory):
+def slow():
+    """For tests that need no tool of the machine's, and still take long."""
+
+
+@pytest.fixture(scope="session")
+def thorough(pytestconfig):
+    """Whether all tests are run: where a quick one looks at a few cases, it looks at a great many then."""
+    return pytestconfig.option.all
+
+
+@pytest.fixture(scope="session")
+def made_once(tmp_path_factory):
+    """made_once(name, make): the folder of this name which make(folder) fills, once for all processes of a run."""
+    own = tmp_path_factory.getbasetemp()
+    run = own.parent if "PYTEST_XDIST_WORKER" in os.environ else own
+
+    def made(name, make):
+        folder, done = run / name, run / f"{name}.done"
+        with open(run / f"{name}.lock", "w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            if not done.exists():
+                shutil.rmtree(folder, ignore_errors=True)  # what another process has left unfinished
+                folder.mkdir()
+                make(folder)
+                done.touch()
+        return folder
+
+    return made
+
+
+@pytest.fixture(scope="session")
+def released(made_once):
     """A course in which the assignment was released; not to be changed by tests."""
     from autograder.course import Course
-    from autograder.release import release
+    from autograder.handout.release import release
 
-    root = tmp_path_factory.mktemp("course") / "released"
-    shutil.copytree(ROOT, root, ignore=shutil.ignore_patterns(*MADE_AT_RUN_TIME, ".pytest_cache"))
-    course = Course(root)
-    release(course)
-    return course
+    def make(folder):
+        ignored = shutil.ignore_patterns(*MADE_AT_RUN_TIME, ".pytest_cache")
+        shutil.copytree(ROOT, folder, ignore=ignored, dirs_exist_ok=True)
+        release(Course(folder))
+
+    return Course(made_once("released", make))
+
+
+@pytest.fixture
+def draft(tmp_path):
+    """A course of the test's own, as it is committed; nbgrader has not made a gradebook yet."""
+    from autograder.course import Course
+
+    ignored = shutil.ignore_patterns(*MADE_AT_RUN_TIME, ".*", "tests", "findings")
+    shutil.copytree(ROOT, tmp_path / "draft", ignore=ignored)
+    return Course(tmp_path / "draft")
 
 
 @pytest.fixture
@@ -36,24 +127,12 @@ def course(released, tmp_path):
     return Course(tmp_path / "course")
 
 
-SOFTWARE_WEBGL = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-CHROMIUM_FLAGS = (
-    "--no-sandbox --disable-gpu --disable-background-networking --disable-component-update --disable-sync --no-first-run"
-).split()
-
-
-def lacking(what):
-    """Skip a test for want of something this machine does not have; in CI that is a failure."""
-    if os.environ.get("CI") == "true":
-        pytest.fail(what)
-    pytest.skip(what)
-
-
 @pytest.fixture(scope="session")
 def sandboxed():
     """For tests that need bubblewrap."""
     from autograder import sandbox
 
+    sandbox.problem.cache_clear()  # a test without this fixture may have asked
     if problem := sandbox.problem():
         lacking(problem)
 
@@ -94,8 +173,7 @@ def open_python():
 @pytest.fixture(scope="session")
 def chromium():
     """The path of a Chromium browser."""
-    found = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-    return found or lacking("needs Chromium, to open pages as a student's browser does")
+    return chromium_here() or lacking("needs Chromium, to open pages as a student's browser does")
 
 
 @pytest.fixture(scope="module")
@@ -107,6 +185,31 @@ def browser(chromium):
         launched = playwright.chromium.launch(executable_path=chromium, args=[*CHROMIUM_FLAGS, *SOFTWARE_WEBGL])
         yield launched
         launched.close()
+
+
+@pytest.fixture(scope="session")
+def nbgrader(slow):
+    """nbgrader(course, …): run an nbgrader command in the course's root, as an instructor does."""
+
+    def command(course, *arguments):
+        return subprocess.run(
+            [os.sys.executable, "-m", "nbgrader", *arguments],
+            cwd=course.root, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=4 * PATIENCE,
+        )  # fmt: skip
+
+    return command
+
+
+@pytest.fixture(scope="session")
+def run_all(slow):
+    """run_all(notebook, folder): run a notebook as Jupyter's Run All does, in a kernel: it stops at the first error."""
+    from nbclient import NotebookClient
+
+    def execute(notebook, folder):
+        NotebookClient(notebook, timeout=PATIENCE, resources={"metadata": {"path": str(folder)}}).execute()
+        return notebook
+
+    return execute
 
 
 @pytest.fixture(scope="session")

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 from scipy.spatial.transform import Rotation
-from transform_lab.diagnosis import together
+from transform_lab.judging.diagnosis import together
 
 from .cases import (
     either_sign,

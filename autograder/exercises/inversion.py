@@ -2,7 +2,7 @@
 
 import numpy as np
 from scipy.spatial.transform import Rotation
-from transform_lab.diagnosis import together
+from transform_lab.judging.diagnosis import together
 
 from .cases import (
     from_roll_pitch_yaw,

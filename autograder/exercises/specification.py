@@ -10,9 +10,12 @@ from dataclasses import dataclass, field
 from inspect import signature
 
 import numpy as np
-from transform_lab import codec
-from transform_lab.answers import PARTS, Unfit, is_right, parts_of
-from transform_lab.diagnosis import error_of, open_parts_of
+from transform_lab.judging import codec
+from transform_lab.judging.answers import is_right, parts_of
+from transform_lab.judging.comparison import frames_of
+from transform_lab.judging.diagnosis import error_of, open_parts_of
+from transform_lab.judging.kinds import KINDS
+from transform_lab.judging.reading import Unfit
 
 PUBLIC_SEED = 24  # the cases students see; any other seed draws hidden ones
 DIGITS = 12  # decimals kept of arguments and right answers: far below the tolerance of 1e-6
@@ -33,7 +36,7 @@ class Case:
 class Misconception:
     """One way to get an exercise wrong, as code: `wrong` answers the exercise's arguments as that student would."""
 
-    id: str  # of the design's list; two of them, joined by ";", for two mistakes at once
+    id: str  # as verdicts.csv has it, such as "wrong-axis"; two of them, joined by ";", for two mistakes at once
     wrong: Callable
     says: str  # what the answer shows
     hint: str  # helps without giving the solution away
@@ -46,8 +49,9 @@ class Exercise:
     """One exercise.
 
     name: of the student's function, of its test cell, and of the row in every report
-    returns: the kind of answer, a key of transform_lab.answers.PARTS
-    answer: its name, "b_T_a" or "p_in_a", which tells the frame it is given in; names of parameters do the same
+    returns: the kind of answer, a key of transform_lab.judging.kinds.KINDS
+    answer: its name, "b_T_a" or "p_in_a", which tells the frame it is given in; names of parameters do the same. Empty for
+        what is given in none, and not drawn
     reference: the right solution
     cases: from a NumPy random generator to a list of Case; the same families for every seed
     misconceptions: see Misconception
@@ -67,13 +71,19 @@ class Exercise:
     equivalent: dict = field(default_factory=dict)
 
     def __post_init__(self):
-        unknown = set(self.credit) - set(PARTS[self.returns])
+        if self.returns not in KINDS:
+            raise ValueError(f"{self.name}: {self.returns!r} is no kind of answer; there are {', '.join(KINDS)}")
+        if self.answer and not frames_of(self.answer):
+            raise ValueError(
+                f"{self.name}: {self.answer!r} tells no frame; call the answer b_T_a or p_in_a, or nothing"
+            )
+        unknown = set(self.credit) - set(KINDS[self.returns].parts)
         if unknown or sum(self.credit.values()) > 1:
             raise ValueError(f"{self.name}: credit {self.credit} does not fit an answer of kind {self.returns}")
 
 
 def key(exercise, seed):
-    """The exercise with the cases drawn from `seed`, as the plain data that `transform_lab.verdict.examine` takes."""
+    """The exercise with the cases drawn from `seed`, as the plain data that `transform_lab.judging.verdict.examine` takes."""
     cases = exercise.cases(np.random.default_rng(seed))
     return {
         "parameters": [str(p).partition("=")[0] for p in signature(exercise.reference).parameters.values()],

@@ -10,10 +10,10 @@ from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from transform_lab import codec
-from transform_lab.answers import is_right, parts_of
-from transform_lab.check import reply
-from transform_lab.verdict import examine
+from transform_lab.judging import codec
+from transform_lab.judging.answers import is_right, parts_of
+from transform_lab.judging.calling import reply
+from transform_lab.judging.verdict import examine
 
 from ..exercises import PUBLIC_SEED, key
 from ..exercises.specification import Arguments

@@ -11,24 +11,15 @@ import os
 import pwd
 import shutil
 import signal
-import sys
 import tempfile
 import time
 from pathlib import Path
 
-from .bubblewrap import NO_SECCOMP, PATIENCE, NotStarted
+from .. import ASSIGNMENT
+from .bounds import PATIENCE, NotStarted
 
 FIRST, USERS = 20_000, 40_000  # numbers that belong to nobody; a container may have no more than 65536
 _next = itertools.count(os.getpid())  # graders at the same time begin elsewhere
-NEEDS_ROOT = "Each notebook would run as a user of its own, and only root may start processes as another user."
-CLOSED = (
-    "Other users cannot read the Python in use, in {python}, so no notebook runs as one of them. Install it, and make its "
-    "environment, in folders that anybody may read, such as /usr and /opt."
-)
-OPEN = (
-    "Anybody on this machine may read the course, with its solutions, in {root}. Close it or a folder above it: "
-    "chmod 700 {root}"
-)
 
 
 class Account:
@@ -40,7 +31,7 @@ class Account:
     def __init__(self, package):
         self.number = _unused()
         self.home = Path(tempfile.mkdtemp(prefix="notebook-"))
-        self.folder = self.home / "transforms"
+        self.folder = self.home / ASSIGNMENT
         shutil.copytree(package, self.folder / package.name)
         for folder in (self.home, self.folder):
             os.chown(folder, self.number, self.number)
@@ -53,28 +44,6 @@ class Account:
             if time.monotonic() > deadline:
                 raise NotStarted(f"processes of user {self.number} do not end")
         shutil.rmtree(self.home, ignore_errors=True)
-
-
-def refusal(root):
-    """Why the course in `root` must not be graded in this way on this machine, or None."""
-    from .host import Sandbox
-
-    if sys.platform != "linux" or os.getuid() != 0:
-        return NEEDS_ROOT
-    try:
-        import pyseccomp  # noqa: F401
-        import transform_lab
-    except (ImportError, OSError, RuntimeError):
-        return NO_SECCOMP
-    root = Path(root).resolve()
-    if all(folder.stat().st_mode & 0o001 for folder in (root, *root.parents)):
-        return OPEN.format(root=root)
-    try:
-        with Sandbox(Path(transform_lab.__file__).parent, isolated="user") as sandbox, sandbox.notebook() as notebook:
-            works = [output["output_type"] for output in notebook.run_cell("1").outputs] == ["execute_result"]
-            return None if works else CLOSED.format(python=sys.prefix)
-    except (NotStarted, OSError) as error:
-        return f"No process could be started as a user of its own: {error}"
 
 
 def processes(number):

@@ -1,4 +1,4 @@
-"""An empty sandbox, which bubblewrap makes and holds open; and the probe that tells whether it works on this machine.
+"""An empty sandbox, which bubblewrap makes and holds open.
 
 Inside there are: /usr and the Python in use (read-only), the students' package without its key, small writable
 folders, and nothing else of this machine: no network, no other processes, no environment.
@@ -12,43 +12,13 @@ import signal
 import subprocess
 import sys
 import tempfile
-from functools import cache
 from pathlib import Path
+
+from .. import ASSIGNMENT
+from .bounds import COURSE, FOLDER, PATIENCE, WRITABLE, NotStarted
 
 HERE = Path(__file__).parent
 CODE = ("channel.py", "executor.py", "forkserver.py", "seccomp.py")  # what runs in a notebook's process
-COURSE = Path("/course")  # where notebooks run inside; the students' package lies in it
-WRITABLE = (Path("/tmp"), Path("/dev/shm"), COURSE)
-FOLDER = 50_000_000  # bytes in each of them
-PATIENCE = 60.0  # seconds for a sandbox to open or close, on a machine under load
-
-INSTALL = (
-    "bubblewrap (the command bwrap) is not installed. On Debian or Ubuntu: sudo apt-get install bubblewrap; "
-    "on Fedora: sudo dnf install bubblewrap."
-)
-NO_SECCOMP = (
-    "The library libseccomp, which filters system calls, is not installed. On Debian or Ubuntu: sudo apt-get install "
-    "libseccomp2; on Fedora: sudo dnf install libseccomp."
-)
-REFUSED = (
-    "bubblewrap is installed but may not make namespaces here ({reason}). In a container, allow unprivileged user "
-    "namespaces (for Docker: --security-opt seccomp=unconfined, or run the grader outside the container)."
-)
-
-RESTRICTED = (
-    "bubblewrap is installed, but Ubuntu lets only root make namespaces ({reason}). Allow it: "
-    "sudo sysctl -w kernel.apparmor_restrict_unprivileged_userns=0 (for good: a file in /etc/sysctl.d with that setting)."
-)
-APPARMOR = Path("/proc/sys/kernel/apparmor_restrict_unprivileged_userns")
-
-EXPOSED = (
-    "The course lies in a folder that notebooks can read in their sandbox (/usr, or that of Python itself), with its "
-    "solutions and gradebook. Move it somewhere else, such as your home folder."
-)
-
-
-class NotStarted(RuntimeError):
-    """The sandbox did not come up; the message has the reason that bubblewrap gave."""
 
 
 class Namespaces:
@@ -123,17 +93,17 @@ def command(code):
     arguments += ["--proc", "/proc", "--dev", "/dev"]
     for folder in map(str, WRITABLE):
         arguments += ["--perms", "1777", "--size", str(FOLDER), "--tmpfs", folder]
-    arguments += ["--perms", "0777", "--dir", str(COURSE / "transforms")]
-    made = {*WRITABLE, COURSE / "transforms"}
+    arguments += ["--perms", "0777", "--dir", str(COURSE / ASSIGNMENT)]
+    made = {*WRITABLE, COURSE / ASSIGNMENT}
     for path in filter(Path.exists, map(Path, ("/etc/ld.so.cache", "/etc/fonts"))):
         arguments += _bind(path, path, made)
-    for folder in _python():
+    for folder in python_folders():
         if not folder.is_relative_to("/usr") and folder not in made:
             arguments += _bind(folder, folder, made)
     arguments += _bind(code, code, made)
-    arguments += _bind(package, COURSE / "transforms" / package.name, made)
+    arguments += _bind(package, COURSE / ASSIGNMENT / package.name, made)
     # bubblewrap makes / and /dev as folders in memory, of no bounded size.
-    return [*arguments, "--remount-ro", "/dev", "--remount-ro", "/", "--chdir", str(COURSE / "transforms")]
+    return [*arguments, "--remount-ro", "/dev", "--remount-ro", "/", "--chdir", str(COURSE / ASSIGNMENT)]
 
 
 def copy_code(package):
@@ -149,42 +119,7 @@ def copy_code(package):
     return folder
 
 
-@cache
-def problem():
-    """None when sandboxes work on this machine; else what is wrong and what to do, in one line."""
-    if sys.platform != "linux":
-        return (
-            f"bubblewrap needs Linux; this is {sys.platform}. Grade on a Linux machine, or in a Linux virtual machine."
-        )
-    if shutil.which("bwrap") is None:
-        return INSTALL
-    try:
-        import pyseccomp  # noqa: F401
-    except (ImportError, OSError, RuntimeError):
-        return NO_SECCOMP
-    import transform_lab
-
-    from .host import Sandbox
-
-    try:
-        with Sandbox(Path(transform_lab.__file__).parent) as sandbox, sandbox.notebook():
-            return None
-    except NotStarted as error:
-        restricted = APPARMOR.is_file() and APPARMOR.read_text().strip() == "1"
-        return (RESTRICTED if restricted else REFUSED).format(reason=error)
-
-
-def refusal(root):
-    """Why the submissions of the course in `root` must not be graded on this machine, or None."""
-    return problem() or (EXPOSED if exposes(root) else None)
-
-
-def exposes(folder):
-    """Whether notebooks in a sandbox could read `folder`, because it lies in what Python needs."""
-    return any(Path(folder).resolve().is_relative_to(seen) for seen in (Path("/usr"), *_python()))
-
-
-def _python():
+def python_folders():
     """The folders of the Python in use, as they are called and as they are."""
     prefixes = Path(sys.base_prefix), Path(sys.prefix)
     return dict.fromkeys((*prefixes, *(prefix.resolve() for prefix in prefixes)))

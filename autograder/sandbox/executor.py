@@ -25,7 +25,7 @@ from IPython.core.error import StdinNotImplementedError
 from IPython.core.interactiveshell import InteractiveShell
 from traitlets import Any
 from traitlets.config import Config
-from transform_lab.check import call, one_line
+from transform_lab.judging.calling import call, one_line
 
 MOST_OUTPUT = 2_000_000  # bytes of output a notebook may make
 
@@ -228,7 +228,7 @@ class Executor:
         }
 
     def call(self, name, args, kwargs):
-        """Call a function of the notebook with plain arguments: a transform_lab.verdict.Reply as a dictionary."""
+        """Call a function of the notebook with plain arguments: a transform_lab.judging.verdict.Reply as a dictionary."""
         function = self.shell.user_ns.get(name)
         if not callable(function):
             return {"outcome": "undefined"}

@@ -13,12 +13,14 @@ import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from transform_lab import codec
-from transform_lab.verdict import Reply
+from transform_lab.judging import codec
+from transform_lab.judging.verdict import Reply
 
-from ..outputs import printable
+from .. import ASSIGNMENT
+from ..untrusted import printable
 from .account import Account
-from .bubblewrap import COURSE, PATIENCE, Namespaces, NotStarted, copy_code
+from .bounds import COURSE, PATIENCE, Limits, NotStarted
+from .bubblewrap import Namespaces, copy_code
 from .channel import Channel, Closed, Garbled, Late
 from .watch import UserWatch, Watch
 
@@ -31,38 +33,6 @@ ENVIRONMENT = {
     "TRANSFORM_LAB_GRADING": "1",
     "MPLBACKEND": "module://matplotlib_inline.backend_inline",
 }
-
-
-@dataclass(frozen=True)
-class Limits:
-    """What a notebook may use. Seconds are of time in which it could run: waiting for a busy processor is not counted.
-
-    A call or a cell that reaches its limit costs itself; a notebook or submission that does costs its exercises from
-    there on.
-    """
-
-    cell: float = 10.0
-    call: float = 3.0
-    notebook: float = 90.0
-    submission: float = 240.0
-    grace: float = 1.0  # between the interrupt and the end of the process
-    cpu: float = 60.0  # of processor time, all processes of a notebook together
-    memory: int = 2_000_000_000  # bytes of address space for each process, and of memory for all of them together
-    processes: int = 40  # threads count, too
-    file: int = 20_000_000  # bytes of one file
-    files: int = 20_000
-    descriptors: int = 64  # open files, pipes and sockets of a process; what is in them counts nowhere else
-
-    def resources(self):
-        """For resource.setrlimit, inside the sandbox."""
-        return {
-            "RLIMIT_AS": self.memory,
-            "RLIMIT_CPU": int(self.cpu) + 1,
-            "RLIMIT_FSIZE": self.file,
-            "RLIMIT_CORE": 0,
-            "RLIMIT_NPROC": self.processes,
-            "RLIMIT_NOFILE": self.descriptors,
-        }
 
 
 class Ended(Exception):
@@ -182,11 +152,11 @@ class NotebookProcess:
             elif sandbox.isolated:
                 self.namespaces = Namespaces(server.code)
                 settings |= {"limits": self.limits.resources(), "number": NOBODY + self.namespaces.pid}
-                settings |= {"folder": str(COURSE / "transforms"), "environment": {"HOME": "/tmp"}}
+                settings |= {"folder": str(COURSE / ASSIGNMENT), "environment": {"HOME": "/tmp"}}
             else:
                 # A folder of its own with the same files, which is tidy, but protects nothing.
                 self.folder = tempfile.TemporaryDirectory(prefix="notebook-", ignore_cleanup_errors=True)
-                folder = Path(self.folder.name, "transforms")
+                folder = Path(self.folder.name, ASSIGNMENT)
                 shutil.copytree(server.code / sandbox.package.name, folder / sandbox.package.name)
                 settings |= {"limits": {}, "folder": str(folder), "environment": {"HOME": self.folder.name}}
             server.fork(inside, self.namespaces)

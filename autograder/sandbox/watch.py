@@ -4,7 +4,7 @@ import os
 from pathlib import Path
 
 from .account import processes
-from .bubblewrap import FOLDER, WRITABLE
+from .bounds import FOLDER, WRITABLE
 
 PUBLIC = (
     "/tmp",

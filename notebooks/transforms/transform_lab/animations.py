@@ -8,9 +8,9 @@ import math
 import numpy as np
 
 from . import tft
-from .shapes import ORANGE, STEEL
 from .validation import numbers, rigid_transform, row_text
-from .viewer import Viewer
+from .viewing.shapes import ORANGE, STEEL
+from .viewing.viewer import Viewer
 
 __all__ = ["animate_approach", "animate_chain", "animate_inverse", "animate_rotation"]
 
@@ -136,7 +136,7 @@ def animate_approach(object_pose, pre_grasp_pose, wrong_pose=None):
 
 def between(start, end, part):
     """Return the 4x4 transform a `part` (0 to 1) of the way: turned about one axis, moved along a straight line."""
-    turns = [tft.quaternion_from_matrix(T) for T in (start, end)]
+    turns = tft.quaternion_from_matrix(start), tft.quaternion_from_matrix(end)
     matrix = tft.quaternion_matrix(tft.quaternion_slerp(*turns, part))
     matrix[:3, 3] = (1 - part) * start[:3, 3] + part * end[:3, 3]
     return matrix

@@ -13,9 +13,13 @@ does not exist cannot be set (AttributeError), and what is assigned to a field i
 Source: the message definitions of ROS Noetic, and the constructor of ``genpy.Message``.
 """
 
-from dataclasses import MISSING, dataclass, field, fields
+import dataclasses
+from dataclasses import MISSING, dataclass, field
+from functools import cache
 
 __all__ = ["Point", "Vector3", "Quaternion", "Pose", "Header", "PoseStamped", "ColorRGBA", "Marker"]
+
+fields = cache(dataclasses.fields)  # asked for with every new message
 
 
 class Message:
@@ -30,7 +34,7 @@ class Message:
         arguments or for a mixture of both forms, AttributeError for a name that is not a field (all as in ROS 1).
         """
         kind = type(self).__name__
-        names = [f.name for f in fields(self)]
+        names = [f.name for f in fields(type(self))]
         if args and kwargs:
             raise TypeError(f"{kind} takes its fields by position or by name, not both")
         if args and len(args) != len(names):
@@ -42,7 +46,7 @@ class Message:
             if name not in names:
                 raise AttributeError(f"{name} is not an attribute of {kind}, whose fields are {', '.join(names)}")
         given = dict(zip(names, args)) if args else kwargs
-        for f in fields(self):
+        for f in fields(type(self)):
             value = given.get(f.name)
             if value is None:
                 value = f.default if f.default_factory is MISSING else f.default_factory()
@@ -55,7 +59,7 @@ class Message:
 
 def _lines(message, indent):
     """Yield the lines of a message's text form, each starting with `indent`."""
-    for f in fields(message):
+    for f in fields(type(message)):
         value = getattr(message, f.name)
         label = f"{indent}{f.name}: "
         if isinstance(value, Message):

@@ -59,7 +59,7 @@ def rigid_transform(matrix, what):
     if T.shape != (4, 4):
         advice = " Put the rotation into the upper left of np.eye(4)." if T.shape == (3, 3) else ""
         raise ValueError(f"{what} must be a 4x4 homogeneous transform as in ROS; got {shape_text(T)}.{advice}")
-    if not np.allclose(T[3], [0, 0, 0, 1], rtol=0, atol=TOLERANCE):
+    if np.abs(T[3] - (0, 0, 0, 1)).max() > TOLERANCE:
         advice = " The translation belongs into the last column, T[:3, 3]." if T[3, :3].any() else ""
         raise ValueError(f"{what} must have the bottom row 0, 0, 0, 1; it is {row_text(T[3])}.{advice}")
     R = T[:3, :3]

@@ -4,19 +4,16 @@ The cases come from key.json beside this file: arguments, the right answers, and
 give. It holds numbers only; there is no solution in it to find. The grader uses other cases, in another process.
 """
 
-import io
 import json
-import os
-import sys
-import traceback
-from contextlib import contextmanager, redirect_stdout
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 
-from . import codec, comparison, panel
-from .verdict import LOOP, Reply, Verdict, examine
+from .judging import comparison, panel
+from .judging.calling import call, one_line
+from .judging.verdict import LOOP, Verdict, examine
+from .jupyter import being_graded, shell
 
-MOST_PRINTED = 200  # characters of what a function prints while it is checked
 KEY = Path(__file__).with_name("key.json")
 
 
@@ -33,7 +30,7 @@ def check(name, function):
     A right function gets one green line. A stub that is not filled in yet says so calmly. Anything else shows what was
     expected, what came, and the misconception behind it when exactly one explains all answers; then raises CheckFailed.
     """
-    if os.environ.get("TRANSFORM_LAB_GRADING"):
+    if being_graded():
         print(f"{name}: the grader calls this function itself.")
         return
     if not isinstance(name, str):
@@ -65,49 +62,6 @@ def once_done(name):
         print(f"This part appears once {name} is done.")
     except Exception as error:  # whatever the student's function raised, or what its answer led to
         print(f"This part appears once {name} is right; now it stops with {one_line(error)}")
-
-
-def call(function, args, kwargs):
-    """The Reply of `function` to plain arguments: fresh objects for each call, and what became of them after it."""
-    return reply(
-        function, [codec.decode(arg) for arg in args], {key: codec.decode(arg) for key, arg in kwargs.items()}
-    )
-
-
-def reply(function, args, kwargs):
-    """The Reply of `function` to decoded arguments, which have to be fresh."""
-    printed = io.StringIO()
-    try:
-        with redirect_stdout(printed):
-            value = function(*args, **kwargs)
-    except Exception as error:
-        if isinstance(error, NotImplementedError) and _raised_in(function, error):
-            return Reply("not done")
-        return Reply("raised", error=one_line(error))
-    after = [[codec.encode(arg) for arg in args], {key: codec.encode(arg) for key, arg in kwargs.items()}]
-    return Reply("returned", codec.encode(value), after, printed=printed.getvalue()[:MOST_PRINTED])
-
-
-def _raised_in(function, error):
-    """Whether the function itself raised the error, and none that it calls."""
-    step = error.__traceback__
-    while step.tb_next is not None:
-        step = step.tb_next
-    return step.tb_frame.f_code is getattr(function, "__code__", step.tb_frame.f_code)
-
-
-def one_line(error):
-    """An exception in one line of bounded length, with the student's own line in which it came up, if there is one."""
-    where = ""
-    for step in traceback.extract_tb(error.__traceback__):
-        if step.filename.startswith("<ipython-input") or "ipykernel_" in step.filename:
-            where = f", in your line {step.lineno}: `{_shortened(step.line, 80)}`"
-    message = _shortened(f"{type(error).__name__}: {' '.join(str(error).split())}", 180).rstrip(".: ")
-    return message + where
-
-
-def _shortened(text, most):
-    return text if len(text) <= most else f"{text[: most - 1]}…"
 
 
 @cache
@@ -162,12 +116,3 @@ class _Points:
     def _repr_mimebundle_(self, include=None, exclude=None):
         note = f"<span>{self.earned:g} of {self.most:g} points with these cases</span>"
         return {"text/plain": f"{self.earned:g}", "text/html": note}
-
-
-def shell():
-    """IPython's shell where there is one; a plain `python` script has none."""
-    if "IPython" not in sys.modules:
-        return None
-    from IPython import get_ipython
-
-    return get_ipython()

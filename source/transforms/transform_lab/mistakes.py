@@ -1,12 +1,9 @@
 """What a mistake does to a frame or a point: where it should be, and where the mistake puts it."""
 
-import os
-
 import numpy as np
 
-from .check import shell
-from .comparison import add_matrix
-from .viewer import Viewer
+from .jupyter import being_graded, shell
+from .viewing.viewer import Viewer
 
 __all__ = ["show_mistake"]
 
@@ -29,14 +26,14 @@ def show_mistake(right, wrong, name="frame_b", viewer=None, length=None, gripper
         elif hasattr(value, "x") or np.ndim(value) == 1:
             viewer.add_point(label, value, ghost=ghost)
         else:
-            add_matrix(viewer, label, np.asarray(value, float), ghost, length)
+            viewer.add_matrix(label, np.asarray(value, float), length=length, ghost=ghost)
         if gripper:
             viewer.add_gripper(label, ghost=ghost)
     viewer.text = "pale: as it should be; strong: by mistake"
     if viewer.at:
         viewer.look(at={*viewer.at, name, MISTAKE})
     words = f"Where it should be, and where the mistake puts it.\n{viewer.description()}"
-    if shell() is None or os.environ.get("TRANSFORM_LAB_GRADING"):  # nobody looks while a notebook is graded
+    if shell() is None or being_graded():  # nobody looks while a notebook is graded
         print(words)
         return
     from IPython.display import display

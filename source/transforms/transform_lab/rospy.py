@@ -8,9 +8,9 @@ import atexit
 import time
 from pathlib import Path
 
-from .check import shell
+from .jupyter import shell
 from .messages import Marker
-from .viewer import Viewer
+from .viewing.viewer import Viewer
 
 __all__ = ["Publisher", "Time", "init_node", "loginfo", "sleep"]
 

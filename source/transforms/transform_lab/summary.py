@@ -1,10 +1,10 @@
 """The last cell of a notebook: what is done, the points so far, and what to hand in."""
 
-import os
 from html import escape
 
-from . import panel
-from .check import notebook_data, shell, verdict_on
+from .check import notebook_data, verdict_on
+from .judging import panel
+from .jupyter import being_graded, shell
 
 __all__ = ["sum_up"]
 
@@ -16,7 +16,7 @@ def sum_up(notebook):
 
     The points are those that the cases of `check` give; the grader uses other cases of the same kinds.
     """
-    if os.environ.get("TRANSFORM_LAB_GRADING"):
+    if being_graded():
         print("The grader sums up by itself.")
         return
     exercises, questions = notebook_data(notebook)

@@ -1,0 +1,189 @@
+"""The one writer: graded submissions into nbgrader's gradebook and the autograded/ folder.
+
+The marks are those that nbgrader's own SaveAutoGrades would record from the same notebooks, written student by student
+instead of cell by cell.
+"""
+
+import logging
+import shutil
+import sqlite3
+import time
+
+import nbformat
+from nbgrader.api import (
+    Assignment,
+    BaseCell,
+    Comment,
+    Grade,
+    Gradebook,
+    MissingEntry,
+    Notebook,
+    SubmittedAssignment,
+    SubmittedNotebook,
+)
+from nbgrader.plugins import CsvExportPlugin
+from nbgrader.preprocessors import AssignLatePenalties
+from sqlalchemy import Engine, event, select, update
+from sqlalchemy.exc import DatabaseError, OperationalError
+
+from ..course import ASSIGNMENT, CourseError
+from ..files import replace
+from ..grading.marks import CellGrade, NotebookGrades
+from ..intake.submission import TIMESTAMP
+from . import registration
+from .nbgrader_api import db_url, settings
+
+PATIENCE = 60.0  # seconds to wait for a database that somebody else has locked
+
+
+logging.getLogger("tornado.application").setLevel(logging.CRITICAL)  # nbgrader's: what fails is said by ours
+
+
+@event.listens_for(Engine, "connect")
+def _wait_for_locks(connection, _):
+    """Have SQLite wait when somebody else, such as the formgrader, writes; it gives up after 5 seconds by itself."""
+    if isinstance(connection, sqlite3.Connection):
+        connection.execute(f"PRAGMA busy_timeout = {int(PATIENCE * 1000)}")
+
+
+def opened(course):
+    """nbgrader's Gradebook of a course, made where there is none; raises CourseError when it cannot be read."""
+    try:
+        return Gradebook(db_url(course))
+    except DatabaseError as error:
+        raise CourseError(
+            f"The gradebook cannot be read ({error.orig}). Put a backup in its place; or move it away, and "
+            "`python3 -m autograder grade --force` makes a new one from submitted/ (without hand-given grades)."
+        ) from None
+
+
+class Writer:
+    """Records Graded submissions; a context manager that holds the gradebook open."""
+
+    def __init__(self, course):
+        self.course, self.config, self.db_url = course, settings(course), db_url(course)
+
+    def __enter__(self):
+        released = self.course.notebooks  # raises CourseError when there are none, before a gradebook is made
+        self.gradebook = opened(self.course)
+        try:
+            registration.follow(self.gradebook, released, self.config, self.db_url)
+            self.stale = None
+        except CourseError as error:
+            self.stale = error  # the gradebook may be read and cleared; who wants to record first asks `can_record`
+        cells = self.gradebook.db.execute(select(BaseCell.id, BaseCell.name)).all()
+        self.cells = {identifier: name for identifier, name in cells}
+        return self
+
+    def can_record(self):
+        """Raise CourseError when the released notebooks have other cells than the gradebook, which holds students' work."""
+        if self.stale:
+            raise self.stale
+
+    def __exit__(self, *_):
+        self.gradebook.close()
+
+    def students(self):
+        """Those who have a submission in the gradebook."""
+        return {submission.student_id for submission in self.gradebook.assignment_submissions(ASSIGNMENT)}
+
+    def record(self, graded):
+        """Write one Graded: first the marks, then the files, whose records say that all is done."""
+        start = time.monotonic()
+        while True:
+            try:
+                self._write_marks(graded)
+                break
+            except OperationalError as error:
+                self.gradebook.db.rollback()
+                if "locked" not in str(error) or time.monotonic() - start > PATIENCE:
+                    raise
+                time.sleep(0.5)
+        shutil.rmtree(self.course.feedback(graded.student), ignore_errors=True)  # made anew, or it would be out of date
+        self._write_files(graded)
+
+    def export(self, path):
+        """Write nbgrader's own CSV of the assignment's grades: what `nbgrader export` writes."""
+        fresh = path.with_name(f".{path.name}.new")
+        exporter = CsvExportPlugin(config=self.config)
+        exporter.to, exporter.assignment = str(fresh), [ASSIGNMENT]
+        exporter.export(self.gradebook)
+        fresh.replace(path)
+
+    def grades(self):
+        """What students are told of their points, {student: {notebook: NotebookGrades}}, in three queries for the whole class."""
+        found = {}
+
+        def of(table, *columns):
+            whose = select(SubmittedAssignment.student_id, Notebook.name, *columns).select_from(table)
+            if table is not SubmittedNotebook:
+                whose = whose.join(SubmittedNotebook, SubmittedNotebook.id == table.notebook_id)
+                whose = whose.join(BaseCell, BaseCell.id == table.cell_id)
+            whose = whose.join(SubmittedAssignment, SubmittedAssignment.id == SubmittedNotebook.assignment_id)
+            whose = whose.join(Assignment, Assignment.id == SubmittedAssignment.assignment_id)
+            whose = whose.join(Notebook, Notebook.id == SubmittedNotebook.notebook_id)
+            for student, notebook, *values in self.gradebook.db.execute(whose.where(Assignment.name == ASSIGNMENT)):
+                yield found.setdefault(student, {}).setdefault(notebook, NotebookGrades()), *values
+
+        for grades, penalty in of(SubmittedNotebook, SubmittedNotebook.late_submission_penalty):
+            grades.penalty = penalty or 0.0
+        for grades, cell, *points in of(Grade, BaseCell.name, Grade.score, Grade.max_score, Grade.needs_manual_grade):
+            grades.cells[cell] = CellGrade(*points)
+        for grades, cell, comment in of(Comment, BaseCell.name, Comment.comment):
+            if comment:
+                grades.comments[cell] = comment
+        return found
+
+    def remove(self, student):
+        """Forget a student and all that was made for them."""
+        for folder in ("submitted", "autograded", "feedback"):
+            shutil.rmtree(self.course.root / folder / student, ignore_errors=True)
+        try:
+            self.gradebook.remove_student(student)
+        except MissingEntry:
+            return
+
+    def _write_files(self, graded):
+        """Each file is replaced in one step, so that nobody ever reads half of one."""
+        folder = self.course.autograded(graded.student)
+        folder.mkdir(parents=True, exist_ok=True)
+        files = {f"{name}.ipynb": text for name, text in graded.notebooks.items()} | graded.receipts
+        for stale in {path.name for path in folder.iterdir()} - set(files):
+            path = folder / stale
+            shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
+        for name, text in files.items():
+            replace(folder / name, text)
+
+    def _write_marks(self, graded):
+        book = self.gradebook
+        book.update_or_create_student(graded.student)
+        given = {"timestamp": graded.receipts[TIMESTAMP]} if TIMESTAMP in graded.receipts else {}
+        submission = book.update_or_create_submission(ASSIGNMENT, graded.student, **given)
+        notebooks = {notebook.id: graded.marks.get(notebook.name) for notebook in submission.notebooks}
+        grades, comments = [], []
+        for identifier, notebook, cell, manual_score in self._rows(Grade, Grade.manual_score, notebooks):
+            marks = notebooks[notebook]
+            score = marks.scores[self.cells[cell]] if marks else 0
+            waiting = marks is not None and (manual_score is not None or score is None)
+            grades.append({"id": identifier, "auto_score": score, "needs_manual_grade": waiting})
+        for identifier, notebook, cell, _ in self._rows(Comment, Comment.auto_comment, notebooks):
+            if notebooks[notebook]:
+                comments.append({"id": identifier, "auto_comment": notebooks[notebook].comments[self.cells[cell]]})
+        penalties = [{"id": identifier, "late_submission_penalty": None} for identifier in notebooks]
+        for table, rows in ((Grade, grades), (Comment, comments), (SubmittedNotebook, penalties)):
+            if rows:
+                book.db.execute(update(table), rows)
+        book.db.commit()
+        if submission.total_seconds_late > 0:
+            self._penalize(graded)
+
+    def _rows(self, table, column, notebooks):
+        """(id, notebook, cell, column) of what a submission has in a table; one query instead of one for each cell."""
+        columns = select(table.id, table.notebook_id, table.cell_id, column)
+        return self.gradebook.db.execute(columns.where(table.notebook_id.in_(notebooks))).all()
+
+    def _penalize(self, graded):
+        """Late penalties are nbgrader's to decide, by the plug-in that its configuration names."""
+        for name in graded.notebooks:
+            resources = {"notebook": name, "assignment": ASSIGNMENT, "student": graded.student, "db_url": self.db_url}
+            AssignLatePenalties(config=self.config).preprocess(nbformat.v4.new_notebook(), {"nbgrader": resources})

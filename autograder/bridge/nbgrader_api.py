@@ -1,0 +1,51 @@
+"""nbgrader's own commands, called from ours with the course's own settings."""
+
+import logging
+import sys
+
+from nbgrader.apps import NbGraderAPI
+from nbgrader.coursedir import CourseDirectory
+from traitlets.config import PyFileConfigLoader
+
+from ..course import CourseError
+
+logger = logging.getLogger("traitlets")  # nbgrader's; a failure is told by ours, and so is progress
+logger.addHandler(logging.NullHandler())  # or Python would print what nobody handles
+
+
+def settings(course):
+    """nbgrader's configuration of this course: database, late penalties and what else nbgrader_config.py sets."""
+    return PyFileConfigLoader("nbgrader_config.py", path=str(course.root)).load_config()
+
+
+def db_url(course):
+    """Where the gradebook is, as SQLAlchemy writes it: SQLite in the course's folder, or what nbgrader_config.py sets."""
+    return CourseDirectory(config=settings(course)).db_url
+
+
+def call(course, command, *arguments):
+    """Run a method of nbgrader's API, such as "generate_feedback"; raises CourseError with the reason when it fails."""
+    config = settings(course)
+    api = NbGraderAPI(CourseDirectory(config=config), config=config)
+    reasons = _Reasons(logging.ERROR)
+    logger.addHandler(reasons)
+    try:
+        result = getattr(api, command)(*arguments, force=True)
+    finally:
+        logger.removeHandler(reasons)
+    if not result["success"]:
+        lines = (result.get("error") or result.get("log") or "").strip().splitlines()
+        raise CourseError("; ".join(reasons.found) or (lines[-1] if lines else "no reason given"))
+
+
+class _Reasons(logging.Handler):
+    """Why nbgrader failed, in words: it logs that and then raises "Please see the the above traceback"."""
+
+    def __init__(self, level):
+        super().__init__(level)
+        self.found = {}  # in order, each once
+
+    def emit(self, record):
+        error = sys.exc_info()[1]
+        words = str(error) if error else record.getMessage()
+        self.found[" ".join((words or type(error).__name__).split())[:500]] = None

@@ -1,0 +1,200 @@
+"""What decides a grade, and what makes a page, each in one number.
+
+- Of grades: the released notebooks, the limits, and the modules on the way from a file to its verdict: all that those
+  of FILE_TO_VERDICT import, one from the other. Of the students' package the panel and its lines do not count, nor what draws.
+- Of pages: the templates, and all that the modules of PAGES import, one from the other.
+
+Of a module its syntax counts: no comment, layout or docstring. What the exercises' misconceptions say and their hints
+count for pages alone, which have them as they are now (see records.py). Of a package that is imported the version counts
+that environment.txt pins: what a student's function answers is NumPy's doing, too.
+"""
+
+import ast
+import contextlib
+import hashlib
+import itertools
+import json
+import sys
+from dataclasses import asdict
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+from ..environment import pinned
+from ..files import replace
+from ..sandbox.bubblewrap import CODE
+
+AUTOGRADER = Path(__file__).parent.parent
+EXERCISES, PACKAGE = "autograder.exercises.", "transform_lab."
+SPECIFIED = tuple(EXERCISES + path.stem for path in (AUTOGRADER / "exercises").glob("*.py"))  # imported by their names
+FILE_TO_VERDICT = (
+    "autograder.intake.submission",
+    "autograder.released",
+    "autograder.grading.grade",
+    *SPECIFIED,
+    *(f"autograder.sandbox.{Path(file).stem}" for file in CODE),  # run as files
+    PACKAGE + "__init__",
+)
+PAGES = ("autograder.pages.feedback", "autograder.pages.exporter", "autograder.pages.markdown", *SPECIFIED)
+PANEL, VIEWING = (PACKAGE + "judging.panel", PACKAGE + "judging.lines"), PACKAGE + "viewing."
+REMEMBERED = Path(__file__).parent / "__pycache__" / "digests.json"
+
+
+def of_grades(course, limits):
+    """The digest of all that decides a grade."""
+    released = {name: notebook.digest for name, notebook in course.notebooks.items()}
+    return _digest(_of_code(course.package)[0], released, asdict(limits))
+
+
+@cache
+def of_pages(course):
+    """The digest of all that makes a page; asked once in a process, which does not load its code again either."""
+    return _of_code(course.package)[1]
+
+
+def _of_code(package):
+    """[digest of the code that decides grades, digest of the code and templates that make pages]
+
+    Reading the syntax of a hundred modules takes half a second: what came of it is remembered for the very same files.
+    """
+    files = files_of(package)
+    told = _digest({name: _sha(source) for name, source in files.modules.items()}, files.templates, files.versions)
+    with contextlib.suppress(OSError, ValueError):
+        known, *found = json.loads(REMEMBERED.read_text(encoding="utf-8"))
+        if known == told:
+            return found
+    found = work_out(files)
+    with contextlib.suppress(OSError):  # where nothing can be written, it is worked out each time
+        REMEMBERED.parent.mkdir(exist_ok=True)
+        replace(REMEMBERED, json.dumps([told, *found]))
+    return found
+
+
+class Files(NamedTuple):
+    """modules: {dotted name: source}, where the name of a package's own file ends in `.__init__`
+
+    templates: {name: digest}; versions: {package: version}
+    """
+
+    modules: dict
+    templates: dict
+    versions: dict
+
+
+def files_of(package):
+    """The Files of the grader and of the students' package."""
+    return Files(
+        {
+            ".".join((top, *path.relative_to(folder).with_suffix("").parts)): path.read_bytes()
+            for top, folder in (("autograder", AUTOGRADER), ("transform_lab", package))
+            for path in folder.rglob("*.py")
+        },
+        {path.name: _sha(path.read_bytes()) for path in (AUTOGRADER / "pages" / "templates").glob("[!.]*")},
+        {"python": list(sys.version_info[:2]), **pinned(AUTOGRADER.parent / "environment.txt")},
+    )
+
+
+def work_out(files):
+    """What `_of_code` gives, of these Files."""
+    decide, make = deciding(files.modules), reached(files.modules, PAGES)
+    return [
+        _digest(_syntax(files.modules, decide, _words()), _imported_versions(files, decide)),
+        _digest(_syntax(files.modules, make), _imported_versions(files, make), files.templates),
+    ]
+
+
+def deciding(modules):
+    """The names of the modules on the way from a file to its verdict."""
+
+    def draws(name):  # the package itself, which is imported along with each of its modules, imports them all
+        return any(other.startswith(VIEWING) for other in reached(modules, [name], without=PACKAGE + "__init__"))
+
+    return {
+        name
+        for name in reached(modules, FILE_TO_VERDICT)
+        if name not in PANEL and not (name.startswith(PACKAGE) and draws(name))
+    }
+
+
+def reached(modules, start, without=__name__):
+    """The modules of `start`, those that they import (one from the other, at their top or later), and the packages of all.
+
+    without: a module that is left out, with what it alone imports; this one decides nothing that it counts
+    """
+    found, waiting = set(), list(start)
+    while waiting:
+        name = waiting.pop()
+        if name in found or name == without:
+            continue
+        found.add(name)
+        for mentioned in _read(name, modules[name])[1]:
+            for step in itertools.accumulate(mentioned.split("."), "{}.{}".format):
+                waiting += {step, f"{step}.__init__"} & modules.keys()
+    return found
+
+
+def _imported_versions(files, names):
+    imported = {
+        mentioned.partition(".")[0].lower() for name in names for mentioned in _read(name, files.modules[name])[1]
+    }
+    return {package: version for package, version in files.versions.items() if package.lower() in {*imported, "python"}}
+
+
+def _syntax(modules, names, words=frozenset()):
+    """{name: digest of the module's syntax}; in the exercises, texts that consist of `words` do not count."""
+    return {
+        name: _without(modules[name], words) if words and name.startswith(EXERCISES) else _read(name, modules[name])[0]
+        for name in names
+    }
+
+
+@cache
+def _read(name, source):
+    """(digest of a module's syntax, the dotted names that it imports: of modules, and of what is taken from these)"""
+    tree, mentioned = _parsed(source), set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            mentioned.update(alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            start = [*(name.split(".")[: -node.level] if node.level else ()), *([node.module] if node.module else ())]
+            mentioned.update(".".join([*start, alias.name]) for alias in node.names)
+    return _digest(ast.dump(tree)), mentioned
+
+
+@cache
+def _without(source, words):
+    """The digest of a module's syntax without the texts that consist of `words`."""
+    tree = _parsed(source)
+    for node in ast.walk(tree):
+        if _is_text(node) and words.issuperset(node.value.split("\n")):
+            node.value = ""
+    return _digest(ast.dump(tree))
+
+
+def _parsed(source):
+    """The syntax of a module without its docstrings."""
+    tree = ast.parse(source)
+    for node in ast.walk(tree):
+        if isinstance(getattr(node, "body", None), list):
+            node.body = [line for line in node.body if not (isinstance(line, ast.Expr) and _is_text(line.value))]
+    return tree
+
+
+def _is_text(node):
+    return isinstance(node, ast.Constant) and isinstance(node.value, str)
+
+
+def _words():
+    """Every line that a misconception says or gives as a hint."""
+    from ..exercises import EXERCISES
+
+    texts = (text for exercise in EXERCISES.values() for m in exercise.misconceptions for text in (m.says, m.hint))
+    return frozenset(line for text in texts for line in text.split("\n"))
+
+
+def _digest(*parts):
+    return _sha(json.dumps(parts, sort_keys=True).encode())
+
+
+def _sha(content):
+    return hashlib.sha256(content).hexdigest()

@@ -1,0 +1,108 @@
+"""The path of a submission, from the files a student handed in to verdicts and graded notebooks. Read it top to bottom.
+
+    submission.submission_of -> restore.restore -> judge.judge (in a sandbox) -> Graded
+
+`grade_submission` is a pure function of its arguments, so any concurrent.futures.Executor can run it anywhere.
+"""
+
+import secrets
+from dataclasses import asdict, dataclass, field
+from datetime import UTC, datetime
+from pathlib import Path
+
+import nbformat
+
+from ..exercises import EXERCISES, key
+from ..intake.restore import restore
+from ..sandbox import Limits, Sandbox
+from . import digests
+from .judge import judge, rows
+from .public_example import public_cases
+from .records import RECORD, missing, told
+
+
+@dataclass(frozen=True)
+class GradingRun:
+    """What submissions are graded against: released notebooks, this run's hidden cases, the students' package."""
+
+    released: dict  # {notebook name: Released}
+    keys: dict  # {exercise: plain data}
+    package: Path
+    seed: int
+    digest: str
+    limits: Limits = Limits()
+    isolated: bool = True
+    public: dict = field(default_factory=dict)  # {exercise: plain data}: the cases of the students' own `check`
+
+    def sandbox(self, submission):
+        """A Sandbox for one submission, with the files that its notebooks may import or read."""
+        return Sandbox(self.package, submission.helpers, self.limits, self.isolated)
+
+
+@dataclass
+class Graded:
+    """The result: a Row for each exercise, the graded notebooks as text, and what was odd, in words."""
+
+    student: str
+    rows: list = field(default_factory=list)
+    notebooks: dict = field(default_factory=dict)  # {notebook name: JSON text}; none for a missing file
+    marks: dict = field(default_factory=dict)  # {notebook name: Marks}
+    problems: list = field(default_factory=list)
+    receipts: dict = field(default_factory=dict)  # {file name: text}, see submission.receipts
+
+
+def grading_run(course, seed, limits=Limits(), isolated=True, notebooks=None):
+    """The GradingRun of a course, with the hidden cases drawn from `seed` (for all notebooks, or those named)."""
+    wanted = course.notebooks if notebooks is None else notebooks
+    names = [name for notebook in wanted for name in course.notebooks[notebook].points]
+    keys = {name: key(EXERCISES[name], seed) for name in names}
+    key_file = course.release / "transform_lab" / "key.json"
+    public = public_cases(key_file.read_text(encoding="utf-8")) if key_file.is_file() else {}
+    digest = digests.of_grades(course, limits)
+    return GradingRun(dict(course.notebooks), keys, course.package, seed, digest, limits, isolated, public)
+
+
+def new_seed():
+    """A seed nobody can know before: hidden cases are drawn anew for each grading run."""
+    return secrets.randbits(32)
+
+
+def grade_submission(submission, run):
+    """Grade one student's submission: a Graded with a row for every exercise of the assignment."""
+    from .marks import marks  # here, because it imports nbgrader, which takes longer than to check one student's files
+
+    graded = Graded(submission.student, problems=list(submission.problems), receipts=submission.receipts)
+    with run.sandbox(submission) as sandbox:
+        for name, released in run.released.items():
+            content = submission.files.get(f"{name}.ipynb")
+            if content is None:
+                graded.rows += missing(released)
+                continue
+            intake = restore(content, released)
+            verdicts = grade_notebook(intake, released, run, sandbox, submission)
+            graded.rows += rows(released, verdicts)
+            graded.notebooks[name] = nbformat.v4.writes(intake.notebook) + "\n"
+            graded.marks[name] = marks(intake.notebook)
+            graded.problems += intake.problems
+    return graded
+
+
+def grade_notebook(intake, released, run, sandbox, submission):
+    """Judge one notebook: {exercise: Verdict}; its outputs, and its record in the metadata, are filled in.
+
+    The record is what reports and feedback are made from, and tells what need not be graded again.
+    """
+    verdicts, examples = judge(intake, released, run.keys, sandbox, run.public)
+    intake.notebook.metadata[RECORD] = nbformat.from_dict(
+        {
+            "rows": [asdict(row) for row in rows(released, verdicts)],
+            "verdicts": {name: told(verdict) for name, verdict in verdicts.items()},
+            "examples": examples,
+            "problems": [*submission.problems, *intake.problems],
+            "seed": run.seed,
+            "graded": datetime.now(UTC).isoformat(timespec="seconds"),
+            "submission": submission.digest,
+            "specification": run.digest,
+        }
+    )
+    return verdicts

@@ -1,0 +1,67 @@
+"""The page of all exercises, autograder/exercises/README.md, made from the specifications; `release` writes it.
+
+`.venv/bin/python -m autograder.handout.exercises_page` draws the picture of the project's README anew.
+"""
+
+from inspect import signature
+from pathlib import Path
+
+import jinja2
+import numpy as np
+from transform_lab.judging.calling import call
+from transform_lab.judging.diagnosis import GENERAL
+from transform_lab.judging.verdict import examine
+from transform_lab.messages import Point, Pose, Quaternion
+from transform_lab.viewing.viewer import Viewer
+
+from ..exercises import EXERCISES, PUBLIC_SEED, key
+
+PAGE = Path("autograder", "exercises", "README.md")  # in the course
+PICTURE = Path(__file__).parents[1] / "exercises" / "pre_grasp.png"  # shown in the README of the project
+TEMPLATE = Path(__file__).with_suffix(".md")
+
+
+def page():
+    """The text of README.md."""
+    template = jinja2.Template(TEMPLATE.read_text(encoding="utf-8"), keep_trailing_newline=True)
+    return template.render(general=GENERAL, exercises=[_described(exercise) for exercise in EXERCISES.values()])
+
+
+def picture():
+    """The PNG (bytes) of the lab's pre-grasp scene: the gripper 10 cm behind the object, along the object's x axis."""
+    viewer = Viewer("base_link")
+    object_pose = Pose(Point(0.6, -0.1, 0.7), Quaternion(0, 0, 0.38268343, 0.92387953))
+    viewer.add_frame("object", object_pose, length=0.05)
+    viewer.add_box("object", (0.04, 0.04, 0.1), frame="object")
+    viewer.add_frame("pre-grasp", EXERCISES["pre_grasp"].reference(object_pose), length=0.05)
+    viewer.add_gripper("pre-grasp")
+    viewer.add_arrow("10 cm", tail=(0, 0, 0.065), tip=(0.1, 0, 0.065), frame="pre-grasp")
+    return viewer.look(at=["object", "pre-grasp"]).picture()
+
+
+def _described(exercise):
+    public = key(exercise, PUBLIC_SEED)
+    rows: dict = {}
+    for misconception in exercise.misconceptions:
+        row = (misconception.id, *(text.replace("\n", "<br>") for text in (misconception.says, misconception.hint)))
+        rows.setdefault(row, []).append(_earned(exercise, public, misconception))
+    return {
+        "signature": f"{exercise.name}{signature(exercise.reference)}",
+        "families": [f"{family}{' (counts double)' if w == 2 else ''}" for family, w in public["weights"].items()],
+        "parts": [f"{part} {round(100 * share)} %" for part, share in exercise.credit.items()],
+        "rows": [
+            {"id": "` + `".join(i.split(";")), "says": says, "hint": hint, "earns": sorted(set(earned))}
+            for (i, says, hint), earned in rows.items()
+        ],
+    }
+
+
+def _earned(exercise, public, misconception):
+    with np.errstate(all="ignore"):  # wrong implementations divide by zero; that is their point
+        verdict = examine(exercise.name, public, lambda args, kwargs: call(misconception.wrong, args, kwargs))
+    return int(100 * verdict.credit)
+
+
+if __name__ == "__main__":
+    PICTURE.write_bytes(picture())
+    print(f"{PICTURE.name} is written.")

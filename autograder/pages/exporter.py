@@ -1,0 +1,110 @@
+"""nbgrader's feedback pages: small, and with nothing in them that acts or loads.
+
+nbgrader_config.py names the exporter here, and the step before it.
+"""
+
+import copy
+import html
+from pathlib import Path
+
+import nbformat
+from nbconvert.exporters import HTMLExporter
+from nbgrader.preprocessors import GetGrades
+from nbgrader.utils import is_grade
+
+from ..grading.judge import opinion
+from ..grading.records import RECORD, verdicts
+from . import examples
+from .rendering import points
+
+TEMPLATE = Path(__file__).parent / "templates" / "feedback.html.j2"
+LARGEST_PAGE = 280_000  # bytes; five of them and the summary stay below 1.5 MB
+SHOWN = (150_000, 50_000, 10_000, 0)  # bytes of a student's own cells to try, until the page is small enough
+TAKES = {"code": 5, "markdown": 2}  # bytes of the page for each byte of a cell's source: colours, formulas
+LEFT_OUT = "[not shown here, or this page would be too large; it is in the notebook that you handed in]"
+NOTE = nbformat.v4.new_output("stream", text=LEFT_OUT)
+
+
+class FetchGrades(GetGrades):
+    """nbgrader's step that fetches points and comments; it learns besides which points nobody has given yet."""
+
+    def _get_score(self, cell, resources):
+        super()._get_score(cell, resources)
+        mark = cell.metadata.nbgrader
+        found = self.gradebook.find_grade(mark.grade_id, self.notebook_id, self.assignment_id, self.student_id)
+        mark.waiting = found.needs_manual_grade
+
+
+class Feedback(HTMLExporter):
+    """Makes a feedback page for `nbgrader generate_feedback`, and so for ours."""
+
+    def __init__(self, **kwargs):
+        super().__init__(**kwargs)
+        self.template_paths = [*self.template_paths, str(TEMPLATE.parent)]
+        self.template_file = TEMPLATE.name
+        self.register_filter("points", points)
+
+    def from_notebook_node(self, nb, resources=None, **kwargs):
+        nb = copy.deepcopy(nb)
+        self._word_anew(nb)
+        self._add_examples(nb)
+        for budget in SHOWN:
+            page, made = super().from_notebook_node(shortened(nb, budget), copy.deepcopy(resources), **kwargs)
+            if len(page.encode()) <= LARGEST_PAGE:
+                return page, made
+        nb.cells = [cell for cell in nb.cells if "nbgrader" in cell.metadata]  # thousands of cells of their own
+        return super().from_notebook_node(shortened(nb, 0), resources, **kwargs)
+
+    def _word_anew(self, nb):
+        """The verdicts in today's words; the notebook has those of the day it was graded."""
+        found = verdicts(nb.metadata.get(RECORD, {}))
+        for cell in nb.cells:
+            name = cell.metadata.get("nbgrader", {}).get("grade_id")
+            if name in found and is_grade(cell) and cell.get("outputs"):
+                cell.outputs[0] = nbformat.from_dict(opinion(found[name]))
+
+    def _add_examples(self, nb):
+        """After the verdict on an exercise, its mistake in numbers and as a picture, of a case that is no secret."""
+        found = nb.metadata.get(RECORD, {}).get("examples", {})
+        for cell in nb.cells:
+            name = cell.metadata.get("nbgrader", {}).get("grade_id")
+            if name not in found or not is_grade(cell) or cell.cell_type != "code":
+                continue
+            try:
+                shown = {"text/html": examples.of_answer(name, found[name])}
+            except (AttributeError, LookupError, TypeError, ValueError) as error:
+                self.log.warning("%s: its record is damaged, so no example is shown (%r)", name, error)
+                continue
+            position = len(cell.outputs) - 1  # the last one says the points
+            cell.outputs.insert(position, {"output_type": "display_data", "data": shown, "metadata": {}})
+
+
+def shortened(nb, budget):
+    """A copy of the notebook in which what a student wrote and displayed takes about `budget` bytes of the page.
+
+    From the top, all that still fits is kept. The verdicts are not touched.
+    """
+    nb, left = copy.deepcopy(nb), budget
+
+    def fits(text, weight=1):
+        nonlocal left
+        size = weight * len(html.escape(text).encode())
+        if size > left:
+            return False
+        left -= size
+        return True
+
+    for cell in nb.cells:
+        if not fits(cell.source, TAKES[cell.cell_type]):
+            cell.source = LEFT_OUT
+        attachments = cell.get("attachments", {})
+        cell.attachments = {name: data for name, data in attachments.items() if fits("".join(map(str, data.values())))}
+        if cell.cell_type == "code" and not is_grade(cell):
+            cell.outputs = [output if fits(_text(output)) else NOTE for output in cell.outputs]
+    return nb
+
+
+def _text(output):
+    """All that an output shows, as one text."""
+    parts = [output.get("text", ""), *output.get("traceback", ()), *output.get("data", {}).values()]
+    return "".join(map(str, parts))

@@ -1,0 +1,133 @@
+"""What is given back to students: nbgrader's page for each notebook, and index.html, which sums them up.
+
+`nbgrader generate_feedback` alone makes the notebooks' pages, and no summary.
+"""
+
+import hashlib
+import json
+import os
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import asdict
+from urllib.parse import quote
+
+from transform_lab.judging import panel
+
+from ..bridge import nbgrader_api
+from ..course import ASSIGNMENT, CourseError
+from ..files import replace
+from ..grading import digests
+from ..grading.marks import CellGrade, NotebookGrades
+from ..grading.records import recorded, verdicts
+from ..grading.workers import end_with_parent
+from ..released import without_points
+from .markdown import heading
+from .rendering import environment
+
+SUMMARY = "index.html"
+
+
+def is_complete(course, student, grades):
+    """Whether there is a whole page for each of the student's graded notebooks, and a summary of these grades.
+
+    grades: {notebook: NotebookGrades}; one that was given or changed by hand asks for new pages
+    """
+    pages = [course.feedback(student) / f"{path.stem}.html" for path in course.autograded(student).glob("*.ipynb")]
+    summary = course.feedback(student) / SUMMARY
+    if not pages:
+        return True
+    told = _digest(course, student, grades).encode()
+    return all(map(_is_whole, [*pages, summary])) and told in summary.read_bytes()
+
+
+def _is_whole(page):
+    """A page that was being written when the grader was killed has no end."""
+    try:
+        with open(page, "rb") as file:
+            file.seek(max(0, os.path.getsize(page) - 100))
+            return file.read().rstrip().endswith(b"</html>")
+    except OSError:
+        return False
+
+
+def _digest(course, student, grades):
+    """Stands in the summary for the grades and the grading that it was made from, and for what made it."""
+    graded = [(name, record["seed"], record["graded"]) for name, record in recorded(course, student).items()]
+    told = digests.of_pages(course), graded, {name: asdict(of) for name, of in grades.items()}
+    return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
+
+
+def generate(course, grades, jobs):
+    """Write feedback/STUDENT/… for {student: {notebook: NotebookGrades}}.
+
+    Yields (student, None or what went wrong) as they are done.
+    """
+    with ProcessPoolExecutor(jobs, initializer=end_with_parent) as pool:
+        yield from zip(grades, pool.map(_one, [course] * len(grades), grades, grades.values()))
+
+
+def _one(course, student, grades):
+    try:
+        nbgrader_api.call(course, "generate_feedback", ASSIGNMENT, student)
+        replace(course.feedback(student) / SUMMARY, summary(course, student, grades))
+    except CourseError as error:
+        return str(error)
+    except Exception as error:  # whatever it is, the others' pages and the class report are not to be lost
+        return f"{type(error).__name__}: {error}"
+    return None
+
+
+def summary(course, student, grades):
+    """The text of index.html: points, and for what is not right what was found, what helps, and what to read again."""
+    records = recorded(course, student)
+    notebooks = [
+        _notebook(released, grades.get(name, NotebookGrades()), records.get(name))
+        for name, released in course.notebooks.items()
+    ]
+    wrong = (cell for notebook in notebooks for cell in notebook["exercises"] if cell["link"] and not cell["right"])
+    template = environment().get_template("summary.html")
+    return template.render(
+        assignment=ASSIGNMENT,
+        notebooks=notebooks,
+        earned=sum(notebook["earned"] for notebook in notebooks),
+        most=sum(notebook["most"] for notebook in notebooks),
+        waiting=sum(cell["waiting"] for notebook in notebooks for cell in notebook["questions"]),
+        begin=next(wrong, None),
+        digest=_digest(course, student, grades),
+    )
+
+
+def _notebook(released, grades, record):
+    """One notebook as the template takes it; `record` is None for one that was not handed in."""
+    page = f"{quote(released.name)}.html" if record else ""
+    asked, found = released.points | released.questions, verdicts(record) if record else {}
+    cells = {name: _cell(name, most, released, grades, found.get(name), page) for name, most in asked.items()}
+    return {
+        "title": released.title,
+        "page": page,
+        "earned": max(0.0, sum(cell["earned"] for cell in cells.values()) - grades.penalty),
+        "most": sum(cell["most"] for cell in cells.values()),
+        "penalty": grades.penalty,
+        "exercises": [cells[name] for name in released.points],
+        "questions": [cells[name] for name in released.questions],
+    }
+
+
+def _cell(name, most, released, grades, verdict, page):
+    """One exercise or question, worth `most` points, as the template takes it.
+
+    verdict: on an exercise; None where a damaged record has lost it, which costs only what is said of it
+    """
+    told = grades.cells.get(name, CellGrade(0.0, most, False))
+    section = released.section(name)
+    return {
+        "name": name,
+        "earned": told.earned,
+        "most": most,
+        "right": told.earned >= most,
+        "waiting": told.waiting,
+        "comment": grades.comments.get(name, ""),
+        "mistakes": panel.mistakes(verdict) if verdict else [],
+        "link": page and f"{page}#{quote(name)}",
+        "section": without_points(section),
+        "again": page and f"{page}#{quote(heading(section)[0])}",
+    }

@@ -1,0 +1,45 @@
+"""What a sandbox may use, and where in it a notebook lies."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+COURSE = Path("/course")  # where notebooks run inside; the students' package lies in it
+WRITABLE = (Path("/tmp"), Path("/dev/shm"), COURSE)
+FOLDER = 50_000_000  # bytes in each of them
+PATIENCE = 60.0  # seconds for a sandbox to open or close, on a machine under load
+
+
+class NotStarted(RuntimeError):
+    """The sandbox did not come up; the message has the reason that bubblewrap gave."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a notebook may use. Seconds are of time in which it could run: waiting for a busy processor is not counted.
+
+    A call or a cell that reaches its limit costs itself; a notebook or submission that does costs its exercises from
+    there on.
+    """
+
+    cell: float = 10.0
+    call: float = 3.0
+    notebook: float = 90.0
+    submission: float = 240.0
+    grace: float = 1.0  # between the interrupt and the end of the process
+    cpu: float = 60.0  # of processor time, all processes of a notebook together
+    memory: int = 2_000_000_000  # bytes of address space for each process, and of memory for all of them together
+    processes: int = 40  # threads count, too
+    file: int = 20_000_000  # bytes of one file
+    files: int = 20_000
+    descriptors: int = 64  # open files, pipes and sockets of a process; what is in them counts nowhere else
+
+    def resources(self):
+        """For resource.setrlimit, inside the sandbox."""
+        return {
+            "RLIMIT_AS": self.memory,
+            "RLIMIT_CPU": int(self.cpu) + 1,
+            "RLIMIT_FSIZE": self.file,
+            "RLIMIT_CORE": 0,
+            "RLIMIT_NPROC": self.processes,
+            "RLIMIT_NOFILE": self.descriptors,
+        }

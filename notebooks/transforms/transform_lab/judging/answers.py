@@ -1,0 +1,65 @@
+"""Takes answers apart, and says when two of them are the same. What differs from kind to kind stands in kinds.py."""
+
+import numpy as np
+
+from . import codec
+from .kinds import KINDS, TOLERANCE
+from .reading import Unfit, type_in_words
+
+
+def parts_of(returns, answer):
+    """`answer` (decoded) as the parts of its kind, {name: float64 array}; raises Unfit when it is none."""
+    if answer is None:
+        raise Unfit("returned-none", "None")
+    kind = KINDS[returns]
+    return kind.read(answer, kind.wanted)
+
+
+def same(returns, one, other):
+    """Whether two answers (plain data) are the same: part by part where both fit the exercise, else as they are."""
+    one, other = codec.decode(one), codec.decode(other)
+    try:
+        first = parts_of(returns, one)
+    except Unfit as unfit:
+        return _same_unfit(returns, unfit, one, other)
+    return made_of(returns, first, other)
+
+
+def is_right(returns, answer, expected):
+    """Whether `answer` (decoded) agrees with the right one, given as its parts."""
+    try:
+        got = parts_of(returns, answer)
+    except Unfit:
+        return False
+    return all(part.agree(got[name], expected[name]) for name, part in KINDS[returns].parts.items())
+
+
+def made_of(returns, parts, answer):
+    """Whether `answer` (decoded) has just these parts."""
+    try:
+        others = parts_of(returns, answer)
+    except Unfit:
+        return False
+    return all(part.agree(parts[name], others[name]) for name, part in KINDS[returns].parts.items())
+
+
+def _same_unfit(returns, unfit, one, other):
+    try:
+        parts_of(returns, other)
+        return False
+    except Unfit as second:
+        if unfit.misconception != second.misconception:
+            return False
+    try:
+        first, second = _all_numbers(one), _all_numbers(other)
+    except (AttributeError, TypeError, ValueError):  # something else than numbers
+        return type_in_words(one) == type_in_words(other) and str(one) == str(other)
+    return first.shape == second.shape and np.allclose(first, second, atol=TOLERANCE, equal_nan=True)
+
+
+def _all_numbers(answer):
+    """The numbers of an array, or of a message's fields, as an array."""
+    if hasattr(answer, "position"):
+        p, q = answer.position, answer.orientation
+        return np.array([p.x, p.y, p.z, q.x, q.y, q.z, q.w], dtype=float)
+    return np.array(answer, dtype=float)

@@ -1,0 +1,164 @@
+"""Reach a verdict on one exercise: call the student's function on each case, compare, and name the misconception.
+
+The same code serves the notebook (`check`, on the public cases of key.json) and the grader (hidden cases, the function
+called in another process), so a student and an instructor never see two opinions.
+
+An exercise, as `examine` takes it, is a dictionary of plain data:
+
+- `parameters`: the names of the function's parameters, a star before one that takes any number of arguments
+- `returns`: the kind of answer, one of transform_lab.judging.kinds.KINDS; `answer`: its name, such as "b_T_a"
+- `credit`: {part of the answer: what that part alone is worth}, as shares of the points; all parts are worth 1
+- `weights`: {family of cases: how much it counts}
+- `misconceptions`: [{"id", "says", "hint"}, …]
+- `cases`: [{"family", "args", "kwargs", "expected", "wrong"}, …], where `wrong` holds what each misconception would
+  answer: null where it happens to be right, {"raises": name of the exception} where it raises, {"any": parts of the
+  answer} where these may be anything
+"""
+
+from dataclasses import dataclass, field
+
+from . import codec
+from .answers import parts_of
+from .diagnosis import constant, diagnose
+from .kinds import KINDS
+from .reading import Unfit
+from .status import refuse_unknown
+
+LOOP = "Look for a loop that never ends, or a function that calls itself for ever."
+
+
+@dataclass
+class Reply:
+    """What came of one call: `outcome` is "returned", "raised", "not done", "undefined", "timeout" or "killed"."""
+
+    outcome: str
+    value: object = None  # the answer, as plain data
+    arguments: object = None  # the positional and keyword arguments after the call, as plain data: [list, dict]
+    error: str = ""  # the student's own error, or why the call had to be stopped; in one line
+    printed: str = ""  # the beginning of what it printed
+
+
+@dataclass
+class Outcome:
+    """One answer compared with the right one."""
+
+    parts: frozenset = frozenset()  # the parts of the answer that are right
+    answered: bool = False  # all of them are
+    got: dict | None = None  # the answer's parts; None when nothing could be compared,
+    problem: tuple | None = None  # then this says why: (id of a general misconception or "", what came)
+    mutated: bool = False  # the call changed its arguments, which costs the case
+
+    @property
+    def right(self):
+        return self.answered and not self.mutated
+
+
+@dataclass
+class Verdict:
+    """What is known about one exercise of one student.
+
+    status: one of transform_lab.judging.status.STATUSES
+    credit: from 0 to 1; 1 only when every case is right
+    misconceptions: ids; more than one when the answer has several mistakes at once
+    """
+
+    exercise: str
+    status: str = "graded"
+    credit: float = 0.0
+    done: bool = True  # False for a stub that nobody has filled in
+    misconceptions: tuple = ()
+    says: str = ""  # what the answer shows
+    hint: str = ""  # what helps
+    parts: dict = field(default_factory=dict)  # part of the answer: number of cases in which it is right
+    cases: int = 0
+    returns: str = ""  # the kind of answer
+    wanted: str = ""  # the answer's name, such as "b_T_a"
+    parameters: tuple = ()  # names of the function's parameters, to show a case by
+    failing: dict | None = None  # the first case with a wrong answer, or none
+    answer: object = None  # the student's answer to it, decoded
+    error: str = ""  # or the error that was raised instead
+
+    def __post_init__(self):
+        refuse_unknown(self.status)
+
+    @property
+    def right(self):
+        return self.credit == 1.0
+
+
+def examine(name, exercise, call):
+    """The Verdict on the function that `call(args, kwargs) -> Reply` calls, over all cases of `exercise`."""
+    cases, returns = exercise["cases"], exercise["returns"]
+    replies = []
+    for case in cases:
+        reply = call(case["args"], case["kwargs"])
+        replies.append(reply)
+        if reply.outcome not in ("returned", "raised"):
+            return _unfinished(name, reply, case)
+    outcomes = [compare(returns, case, reply) for case, reply in zip(cases, replies)]
+    verdict = Verdict(
+        name,
+        "error" if all(reply.outcome == "raised" for reply in replies) else "graded",
+        credit=_credit(exercise, outcomes),
+        parts={part: sum(part in outcome.parts for outcome in outcomes) for part in KINDS[returns].parts},
+        cases=len(cases),
+        returns=returns,
+        wanted=exercise["answer"],
+        parameters=tuple(exercise["parameters"]),
+    )
+    if all(outcome.right for outcome in outcomes):
+        return verdict
+    if constant(replies):
+        verdict.credit = 0.0
+    verdict.misconceptions, verdict.says, verdict.hint = diagnose(exercise, replies, outcomes)
+    for case, reply, outcome in zip(cases, replies, outcomes):
+        if not outcome.answered:  # there is none when calls only changed their arguments
+            verdict.failing, verdict.error = case, reply.error
+            verdict.answer = codec.decode(reply.value) if reply.outcome == "returned" else None
+            break
+    return verdict
+
+
+def _unfinished(name, reply, case):
+    if reply.outcome == "not done":
+        return Verdict(name, "error", done=False, says="Not done yet.")
+    if reply.outcome == "undefined":
+        hint = "Run the cell that defines it, and keep its name as it was."
+        return Verdict(name, "error", says=f"There is no function called {name}.", hint=hint)
+    if reply.outcome == "timeout":
+        why = f": {reply.error}" if reply.error else ""
+        return Verdict(name, "timeout", says=f"Your function did not finish in time{why}.", hint=LOOP, failing=case)
+    says = f"Your function had to be stopped: {reply.error or 'it used too much'}."
+    hint = "Look for a loop or a list that grows without end."
+    return Verdict(name, "killed", says=says, hint=hint, failing=case)
+
+
+def compare(returns, case, reply):
+    """The Outcome of one case."""
+    if reply.outcome == "raised":
+        return Outcome(problem=("", reply.error))
+    mutated = reply.arguments != [case["args"], case["kwargs"]]
+    expected = parts_of(returns, codec.decode(case["expected"]))
+    try:
+        got = parts_of(returns, codec.decode(reply.value))
+    except Unfit as unfit:
+        return Outcome(problem=(unfit.misconception, str(unfit)), mutated=mutated)
+    parts = KINDS[returns].parts
+    good = frozenset(name for name, part in parts.items() if part.agree(got[name], expected[name]))
+    return Outcome(good, len(good) == len(parts), got, mutated=mutated)
+
+
+def _credit(exercise, outcomes):
+    """Each family of cases counts by its weight; within it, a part earns its share when it is right in every case."""
+    if all(outcome.right for outcome in outcomes):
+        return 1.0
+    families = {}
+    for case, outcome in zip(exercise["cases"], outcomes):
+        families.setdefault(case["family"], []).append(outcome)
+    earned = 0.0
+    for family, members in families.items():
+        shared = frozenset.intersection(*(frozenset() if member.mutated else member.parts for member in members))
+        complete = all(member.right for member in members)
+        share = 1.0 if complete else sum(exercise["credit"].get(part, 0.0) for part in shared)
+        earned += exercise["weights"][family] * share
+    return earned / sum(exercise["weights"][family] for family in families)

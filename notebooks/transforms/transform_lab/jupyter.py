@@ -1,0 +1,18 @@
+"""Where the students' package runs: in a notebook or a plain script, with somebody looking or while it is graded."""
+
+import os
+import sys
+
+
+def being_graded():
+    """Whether this is the grader's sandbox, where nobody looks and the grader calls the functions itself."""
+    return bool(os.environ.get("TRANSFORM_LAB_GRADING"))
+
+
+def shell():
+    """IPython's shell where there is one; a plain `python` script has none."""
+    if "IPython" not in sys.modules:
+        return None
+    from IPython import get_ipython
+
+    return get_ipython()

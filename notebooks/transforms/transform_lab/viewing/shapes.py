@@ -1,0 +1,263 @@
+"""What a scene is made of: solid shapes, points, lines and labels, each in the coordinates of a node.
+
+A node is a place in the scene: its transform is given in the scene's root frame, and what hangs on it moves with it.
+Both the interactive page and the still picture are drawn from the same nodes.
+"""
+
+from dataclasses import dataclass, field
+from urllib.parse import quote
+
+import numpy as np
+
+from ..messages import Marker
+from ..validation import numbers, within_reach
+
+X_RED, Y_GREEN, Z_BLUE = (0.84, 0.12, 0.12, 1), (0.05, 0.58, 0.15, 1), (0.12, 0.30, 0.92, 1)
+DARK = (0.15, 0.15, 0.2, 1)
+CORNERS = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])  # of the unit box
+GREY = (0.55, 0.55, 0.6, 1)
+ORANGE, PURPLE = (0.93, 0.49, 0.0, 1), (0.52, 0.18, 0.66, 1)  # points and arrows
+BROWN, STEEL = (0.76, 0.62, 0.42, 1), (0.38, 0.42, 0.48, 1)  # boxes and grippers
+
+
+@dataclass
+class Solid:
+    """A unit solid ("box", "sphere", "cylinder", "cone") placed by `matrix`; colour r, g, b, opacity from 0 to 1.
+
+    The unit solids have diameter or edge 1 and height 1, are centred on the origin, and point along z. `matrix` is 4x4
+    and may scale along the solid's own axes.
+    """
+
+    kind: str
+    matrix: np.ndarray
+    color: tuple
+
+
+@dataclass
+class Cloud:
+    """Square points facing the viewer: `points` Nx3, `colors` Nx4, `size` of the edge in metres."""
+
+    points: np.ndarray
+    colors: np.ndarray
+    size: float
+
+
+@dataclass
+class Mesh:
+    """Triangles seen from both sides: `corners` Nx3x3, `colors` Nx3x4, one for each corner."""
+
+    corners: np.ndarray
+    colors: np.ndarray
+
+
+@dataclass
+class Label:
+    """Text at a position (3 numbers), or `beside` it: wherever around it no other label stands.
+
+    `height` is that of a capital letter, in metres; by default the text is as large as text on a page.
+    """
+
+    text: str
+    position: np.ndarray
+    color: tuple = DARK
+    beside: bool = False
+    height: float | None = None
+
+
+# Where a label stands beside its position: to the right (in half widths of the text) and up (in lines), best first.
+# It takes the first place at which it covers least: a mark of the drawing counts 1, a letter 5, another name or the
+# edge of the picture 20.
+BESIDE = [(0, -1.2), (-1.2, -0.8), (1.2, -0.8), (0, -2.2), (-1.3, 0), (1.3, 0), (-1.2, 0.8), (1.2, 0.8), (0, 1.2)]
+BESIDE += [(-1.2, -1.8), (1.2, -1.8), (-1.2, 1.8), (1.2, 1.8), (0, 2.2), (0, -3.2), (0, 3.2), (0, -4.2)]
+
+
+@dataclass
+class Node:
+    """A place in the scene: `transform` is 4x4 in the root frame; `path` names it, as in "frames/gripper"."""
+
+    path: str
+    transform: np.ndarray
+    solids: list = field(default_factory=list)
+    clouds: list = field(default_factory=list)
+    meshes: list = field(default_factory=list)
+    labels: list = field(default_factory=list)
+
+
+def path(kind, name):
+    """Return the path of the node for `name`, which may contain slashes, as "base/camera" does."""
+    return f"{kind}/{quote(name, safe='')}"
+
+
+def moved(transform, points):
+    """Return points (...x3) moved by a 4x4 matrix."""
+    return points @ transform[:3, :3].T + transform[:3, 3]
+
+
+def placed(kind, position, size, color):
+    """Return a Solid at `position`, its axes along those of the node, of `size` (3 numbers or one)."""
+    matrix = np.eye(4)
+    matrix[:3, :3] *= size
+    matrix[:3, 3] = position
+    return Solid(kind, matrix, color)
+
+
+def rod(start, end, diameter, color, kind="cylinder"):
+    """Return a Solid from `start` to `end` (a cone has its tip at `end`), or none if the two coincide."""
+    start, end = np.asarray(start, float), np.asarray(end, float)
+    length = np.linalg.norm(end - start)
+    if length == 0:
+        return []
+    z = (end - start) / length
+    x = np.cross(np.eye(3)[np.abs(z).argmin()], z)  # any direction at right angles to z
+    x /= np.linalg.norm(x)
+    matrix = np.eye(4)
+    matrix[:3, :3] = np.column_stack([x, np.cross(z, x), z]) * [diameter, diameter, length]
+    matrix[:3, 3] = (start + end) / 2
+    return [Solid(kind, matrix, color)]
+
+
+def arrow(tail, tip, color, shaft, head, head_length):
+    """Return the solids of an arrow; `shaft` and `head` are diameters. The head is at most as long as the arrow."""
+    tail, tip = np.asarray(tail, float), np.asarray(tip, float)
+    length = np.linalg.norm(tip - tail)
+    if length == 0:
+        return []
+    neck = tip - (tip - tail) * min(head_length / length, 1)
+    return rod(tail, neck, shaft, color) + rod(neck, tip, head, color, "cone")
+
+
+def frame_node(name, transform, length, ghost=False):
+    """Return a Node with a frame's three axes, the letters at their tips, and its name.
+
+    A ghost is translucent and thicker, so that a solid frame at the same place is seen inside it.
+    """
+    node = Node(path("frames", name), transform)
+    thick = length * (2.2 if ghost else 1)
+    for letter, axis, color in zip("XYZ", np.eye(3), (X_RED, Y_GREEN, Z_BLUE)):
+        shown = translucent(color) if ghost else color
+        node.solids += arrow((0, 0, 0), length * axis, shown, 0.05 * thick, 0.13 * thick, 0.24 * length)
+        node.labels.append(Label(letter, (1.25 if ghost else 1.12) * length * axis, color))
+    node.solids.append(placed("sphere", (0, 0, 0), 0.08 * thick, translucent(DARK) if ghost else DARK))
+    node.labels.append(Label(name, np.zeros(3), beside=True))
+    return node
+
+
+def gripper_node(gripper, transform):
+    """Return a Node with a parallel-jaw gripper at `transform`: fingers along x, moving along y, tips around the origin.
+
+    Its proportions are those of a common 8 cm gripper.
+    """
+    node = Node(path("grippers", gripper.frame), transform)
+    color = translucent(gripper.color) if gripper.ghost else gripper.color
+    unit = gripper.opening / 0.08  # so that what follows is in metres for an opening of 8 cm
+    dark = (*(0.7 * value for value in color[:3]), color[3])
+    parts = [((-0.028, 0.045, 0), (0.09, 0.01, 0.02), dark), ((-0.028, -0.045, 0), (0.09, 0.01, 0.02), dark)]
+    parts += [((-0.088, 0, 0), (0.03, 0.12, 0.04), color), ((-0.123, 0, 0), (0.04, 0.05, 0.04), color)]
+    for middle, size, shade in parts:
+        node.solids.append(placed("box", unit * np.array(middle), unit * np.array(size), shade))
+    return node
+
+
+def xyz(message, what):
+    """Return the x, y, z of a Point or Vector3 as an array; `what` starts the error messages."""
+    if hasattr(message, "w") or not all(hasattr(message, name) for name in "xyz"):
+        raise TypeError(f"{what} must be a Point, such as Point(1, 2, 3); got {type(message).__name__}")
+    return within_reach(numbers([message.x, message.y, message.z], what, lengths=(3,)), what)
+
+
+def translucent(color):
+    """Return a colour as ghosts have it."""
+    return (*color[:3], 0.3 * color[3])
+
+
+def rgba(color, what):
+    """Return a colour (ColorRGBA, or 3 or 4 numbers from 0 to 1) as a tuple r, g, b, opacity."""
+    if isinstance(color, str):
+        raise TypeError(f"{what} must be numbers from 0 to 1, such as (1, 0, 0) for red; got {color!r}")
+    if hasattr(color, "r"):
+        color = [color.r, color.g, color.b, color.a]
+    values = numbers(color, what, lengths=(3, 4))
+    if values.min() < 0 or values.max() > 1:
+        raise ValueError(f"{what} must be made of numbers from 0 to 1 (not to 255); got {values.tolist()}")
+    return (*values.tolist(), 1.0)[:4]
+
+
+def draw_marker(marker, node):
+    """Hang on `node` what `marker` shows, in the coordinates of the marker's pose. Sizes mean what they mean in RViz.
+
+    Raises ValueError for a size of 0, an odd number of points in a LINE_LIST, and for types that are not drawn.
+    """
+    color, size, kind = rgba(marker.color, "color"), xyz(marker.scale, "scale"), marker.type
+    if len(marker.points) > MOST and kind != Marker.POINTS:
+        raise ValueError(f"a marker draws at most {MOST} points; got {len(marker.points)}. POINTS take any number")
+    points = [xyz(point, f"points[{i}]") for i, point in enumerate(marker.points)]
+    given = [rgba(c, f"colors[{i}]") for i, c in enumerate(marker.colors)]
+    triangles = kind == Marker.TRIANGLE_LIST and 3 * len(given) == len(points)  # one colour for each
+    if given and len(given) != len(points) and not triangles:
+        raise ValueError(f"colors must be as many as points, or none; got {len(given)} colors, {len(points)} points")
+    colors = [c for c in given for _ in range(3)] if triangles else given or [color] * len(points)
+    if kind == Marker.ARROW and points:
+        if len(points) != 2:
+            raise ValueError(f"an ARROW takes two points (tail and tip) or none; got {len(points)}")
+        _need_size(size[:2], "scale.x (shaft diameter) and scale.y (head diameter)")
+        tail, tip = points
+        node.solids += arrow(tail, tip, color, size[0], size[1], size[2] or 0.23 * np.linalg.norm(tip - tail))
+    elif kind == Marker.ARROW:
+        _need_size(size[:2], "scale.x (length) and scale.y (width)")
+        node.solids += arrow((0, 0, 0), (size[0], 0, 0), color, size[1], 2 * size[1], 0.23 * size[0])
+    elif kind in SOLIDS:
+        _need_size(size, "scale.x, scale.y and scale.z")
+        node.solids.append(placed(SOLIDS[kind], (0, 0, 0), size, color))
+    elif kind in SOLID_LISTS:
+        _need_size(size, "scale.x, scale.y and scale.z")
+        node.solids += [placed(SOLID_LISTS[kind], p, size, c) for p, c in zip(points, colors)]
+    elif kind in (Marker.LINE_STRIP, Marker.LINE_LIST):
+        _need_size(size[:1], "scale.x (line width)")
+        if kind == Marker.LINE_LIST and len(points) % 2:
+            raise ValueError(f"a LINE_LIST takes two points for each line; got {len(points)} points")
+        step = 2 if kind == Marker.LINE_LIST else 1
+        for start, end, c in list(zip(points, points[1:], colors))[::step]:
+            node.solids += rod(start, end, size[0], c)
+    elif kind == Marker.POINTS:
+        _need_size(size[:1], "scale.x (point width)")
+        for some in _of_one_opacity(np.reshape(colors, (-1, 4))):
+            node.clouds.append(Cloud(np.array(points)[some], np.array(colors)[some], size[0]))
+    elif kind == Marker.TEXT_VIEW_FACING:
+        _need_size(size[2:], "scale.z (height of a capital letter)")
+        node.labels.append(Label(marker.text, np.zeros(3), color, height=size[2]))
+    elif kind == Marker.TRIANGLE_LIST:
+        _need_size(size, "scale.x, scale.y and scale.z")
+        if len(points) % 3:
+            raise ValueError(f"a TRIANGLE_LIST takes three points for each triangle; got {len(points)} points")
+        corners = within_reach(np.reshape(points, (-1, 3, 3)) * size, "a triangle's corner")
+        for some in _of_one_opacity(np.reshape(colors, (-1, 3, 4))):
+            node.meshes.append(Mesh(corners[some], np.reshape(colors, (-1, 3, 4))[some]))
+    else:
+        raise ValueError(f"markers of type {marker_type(marker)} are not drawn yet; these are: {', '.join(DRAWN)}")
+
+
+def _of_one_opacity(colors):
+    """Yield, for each opacity above 0 in `colors` (Nx4 or Nx3x4), which of the N have it."""
+    opacities = colors[..., 3].reshape(len(colors), -1).mean(axis=1)
+    for opacity in np.unique(opacities[opacities > 0]):
+        yield opacities == opacity
+
+
+MOST = 2000  # of what is drawn as solids; more would take a browser seconds
+SOLIDS = {Marker.CUBE: "box", Marker.SPHERE: "sphere", Marker.CYLINDER: "cylinder"}
+SOLID_LISTS = {Marker.CUBE_LIST: "box", Marker.SPHERE_LIST: "sphere"}
+TYPE_NAMES = (
+    "ARROW CUBE SPHERE CYLINDER LINE_STRIP LINE_LIST CUBE_LIST SPHERE_LIST POINTS TEXT_VIEW_FACING"
+    " MESH_RESOURCE TRIANGLE_LIST"
+).split()
+DRAWN = [name for name in TYPE_NAMES if name != "MESH_RESOURCE"]
+
+
+def marker_type(marker):
+    """Return the name of a marker's type, such as "LINE_LIST", or its number if there is none."""
+    return dict(enumerate(TYPE_NAMES)).get(marker.type, str(marker.type))
+
+
+def _need_size(values, names):
+    if not all(values > 0):
+        raise ValueError(f"a marker's {names} must be above 0; got {', '.join(f'{v:g}' for v in values)}")

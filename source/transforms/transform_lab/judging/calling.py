@@ -1,0 +1,51 @@
+"""Calls a student's function with plain arguments, in the process that has it: the notebook's kernel, or the sandbox."""
+
+import io
+import traceback
+from contextlib import redirect_stdout
+
+from . import codec
+from .verdict import Reply
+
+MOST_PRINTED = 200  # characters of what a function prints while it is checked
+
+
+def call(function, args, kwargs):
+    """The Reply of `function` to plain arguments: fresh objects for each call, and what became of them after it."""
+    return reply(function, [codec.decode(arg) for arg in args], {key: codec.decode(arg) for key, arg in kwargs.items()})
+
+
+def reply(function, args, kwargs):
+    """The Reply of `function` to decoded arguments, which have to be fresh."""
+    printed = io.StringIO()
+    try:
+        with redirect_stdout(printed):
+            value = function(*args, **kwargs)
+    except Exception as error:
+        if isinstance(error, NotImplementedError) and _raised_in(function, error):
+            return Reply("not done")
+        return Reply("raised", error=one_line(error))
+    after = [[codec.encode(arg) for arg in args], {key: codec.encode(arg) for key, arg in kwargs.items()}]
+    return Reply("returned", codec.encode(value), after, printed=printed.getvalue()[:MOST_PRINTED])
+
+
+def _raised_in(function, error):
+    """Whether the function itself raised the error, and none that it calls."""
+    step = error.__traceback__
+    while step.tb_next is not None:
+        step = step.tb_next
+    return step.tb_frame.f_code is getattr(function, "__code__", step.tb_frame.f_code)
+
+
+def one_line(error):
+    """An exception in one line of bounded length, with the student's own line in which it came up, if there is one."""
+    where = ""
+    for step in traceback.extract_tb(error.__traceback__):
+        if step.filename.startswith("<ipython-input") or "ipykernel_" in step.filename:
+            where = f", in your line {step.lineno}: `{_shortened(step.line, 80)}`"
+    message = _shortened(f"{type(error).__name__}: {' '.join(str(error).split())}", 180).rstrip(".: ")
+    return message + where
+
+
+def _shortened(text, most):
+    return text if len(text) <= most else f"{text[: most - 1]}…"

@@ -1,0 +1,181 @@
+"""The one table of kinds of answers: what each is made of, and how it is read, compared, put into words and drawn.
+
+A new kind is one more entry of KINDS; `check`, the judge, the diagnosis and every page go by it.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..messages import Point, Pose, Quaternion
+from . import lines, reading
+
+TOLERANCE = 1e-6  # absolute up to 1 (metre, or component of a unit vector), relative beyond
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of an answer, an array of numbers that is right or wrong as a whole.
+
+    unit: of its numbers, "m", when the distance from the right ones says how far off they are
+    words: from (got, expected) to how far off it is, where a distance does not say it
+    quaternion: whether it is x, y, z, w of an orientation: q and -q are the same, and the length has to be 1
+    """
+
+    unit: str = ""
+    words: Callable | None = None
+    quaternion: bool = False
+
+    def agree(self, got, expected):
+        """Whether two values are the same to the tolerance."""
+        if self.quaternion:
+            return bool(min(np.abs(got - expected).max(), np.abs(got + expected).max()) <= TOLERANCE)
+        return bool(np.all(np.abs(got - expected) <= TOLERANCE * np.maximum(1.0, np.abs(expected))))
+
+    def off(self, got, expected):
+        """How far a value is off, in words: "off by 0.1 m"."""
+        if self.agree(got, expected):
+            return "right"
+        if self.words:
+            return self.words(got, expected)
+        return f"off by {np.linalg.norm(got - expected):.3g} {self.unit}" if self.unit else "wrong"
+
+
+def _rotation_off(got, expected):
+    if np.abs(got.T @ got - np.eye(3)).max() > 1e-3:
+        return "not a rotation: its columns are not all of length 1 and at right angles"
+    if np.linalg.det(got) < 0:
+        return "a mirror image, not a rotation: the axes are left-handed"
+    return f"off by {_degrees('from_matrix', got, expected)}"
+
+
+def _quaternion_off(got, expected):
+    largest = np.abs(got).max()
+    if largest < 1e-9:
+        return "no orientation: all four numbers are 0"
+    length, turn = np.linalg.norm(got), _degrees("from_quat", got / largest, expected)
+    return f"off by {turn}" if abs(length - 1) < 1e-3 else f"off by {turn}, and of length {length:.3g}"
+
+
+def _degrees(form, got, expected):
+    from scipy.spatial.transform import Rotation  # only now: it takes long to import
+
+    one, other = (getattr(Rotation, form)(value) for value in (got, expected))
+    return f"{np.degrees((one.inv() * other).magnitude()):.3g} degrees"
+
+
+ANYTHING = Part()  # there is nothing to say of it but "right" or "wrong"
+PLACE = Part(unit="m")
+ROTATION = Part(words=_rotation_off)
+ORIENTATION = Part(words=_quaternion_off, quaternion=True)
+
+# --- the expected answer and the student's as lines of text: (got, expected, {part: how far it is off}) -> [lines] --
+
+
+def in_rows(got, expected, off):
+    """Part by part, the expected one above the student's."""
+    width = max(map(len, expected)) + 2 if len(expected) > 1 else 0
+    found = []
+    for part, right in expected.items():
+        found.append(f"  {part if width else '':{width}}expected  {lines.row(right)}")
+        found.append(f"  {'':{width}}yours     {lines.row(got[part])}   {off[part]}")
+    return found
+
+
+def as_matrices(got, expected, off):
+    """Side by side."""
+    left, right = lines.in_columns(matrix_of(expected), matrix_of(got))
+    indent = len(left[0]) + 4
+    rows = [f"  {'expected':{indent}}yours", *(f"  {one:{indent}}{other}" for one, other in zip(left, right))]
+    return [*rows, *(f"  {part}: {what}" for part, what in off.items())]
+
+
+def as_truths(got, expected, off):
+    return [f"  {who:10}{bool(value['answer'])}" for who, value in (("expected", expected), ("yours", got))]
+
+
+# --- one of them in a scene: (viewer, label, parts, whether it is drawn pale, the length of a matrix's axes) ---------
+
+
+def draw_matrix(viewer, label, parts, ghost, length):
+    viewer.add_matrix(label, matrix_of(parts), length=length, ghost=ghost)
+
+
+def draw_pose(viewer, label, parts, ghost, length):
+    p, q = Point(*parts["position"].tolist()), Quaternion(*parts["orientation"].tolist())
+    viewer.add_frame(label, Pose(p, q), ghost=ghost)
+
+
+def draw_point(viewer, label, parts, ghost, length):
+    viewer.add_point(label, parts["coordinates"], ghost=ghost)
+
+
+# --- the table ------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of answer.
+
+    wanted: what the function has to return, in words: "a 4x4 array"
+    parts: {name: Part}, which are right or wrong by themselves, and which an exercise gives credit for
+    read: from (answer, wanted) to {name of the part: array}; raises reading.Unfit for what is no answer of this kind
+    draw: adds an answer to a viewer, see above; None for what cannot be drawn
+    show: compares two answers in lines of text, see above
+    """
+
+    wanted: str
+    parts: dict
+    read: Callable
+    draw: Callable | None
+    show: Callable = in_rows
+
+
+def _transform(answer, wanted):
+    matrix = reading.array(answer, wanted, (4, 4))
+    return {"rotation": matrix[:3, :3], "translation": matrix[:3, 3], "bottom row": matrix[3]}
+
+
+def matrix_of(parts):
+    """The 3x3 or 4x4 matrix that has these parts."""
+    if "translation" not in parts:
+        return parts["rotation"]
+    return np.vstack([np.column_stack([parts["rotation"], parts["translation"]]), parts["bottom row"]])
+
+
+KINDS = {
+    "rotation": Kind(
+        wanted="a 3x3 array",
+        parts={"rotation": ROTATION},
+        read=lambda answer, wanted: {"rotation": reading.array(answer, wanted, (3, 3))},
+        draw=draw_matrix,
+        show=as_matrices,
+    ),
+    "transform": Kind(
+        wanted="a 4x4 array",
+        parts={"rotation": ROTATION, "translation": PLACE, "bottom row": ANYTHING},
+        read=_transform,
+        draw=draw_matrix,
+        show=as_matrices,
+    ),
+    "pose": Kind(
+        wanted="a Pose",
+        parts={"position": PLACE, "orientation": ORIENTATION},
+        read=lambda answer, wanted: reading.fields(answer, wanted, position="xyz", orientation="xyzw"),
+        draw=draw_pose,
+    ),
+    "coordinates": Kind(
+        wanted="an array of 3 coordinates",
+        parts={"coordinates": PLACE},
+        read=lambda answer, wanted: {"coordinates": reading.array(answer, wanted, (3,), (3, 1), (1, 3)).reshape(3)},
+        draw=draw_point,
+    ),
+    "truth": Kind(
+        wanted="True or False",
+        parts={"answer": ANYTHING},
+        read=lambda answer, wanted: {"answer": reading.truth(answer, wanted)},
+        draw=None,
+        show=as_truths,
+    ),
+}

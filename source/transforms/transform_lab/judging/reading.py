@@ -1,0 +1,77 @@
+"""An answer as numbers, or why it is none: what the kinds of answers (kinds.py) are read with."""
+
+import numpy as np
+
+from . import codec
+
+
+class Unfit(ValueError):
+    """The answer cannot be compared at all: `misconception` is the id, the message says what came instead."""
+
+    def __init__(self, misconception, message):
+        super().__init__(message)
+        self.misconception = misconception
+
+
+def array(answer, wanted, *shapes):
+    """The answer (decoded) as a float64 array of one of these shapes; `wanted` says in words what it has to be.
+
+    Raises Unfit for anything else. The shape () is that of a single number.
+    """
+    try:
+        numbers = np.array(answer)
+        if numbers.dtype.kind not in "iuf":
+            raise ValueError("no numbers")
+        numbers = numbers.astype(np.float64)
+    except (TypeError, ValueError) as error:
+        raise Unfit("wrong-type", f"{type_in_words(answer)} instead of {wanted}") from error
+    if numbers.shape not in shapes:
+        raise Unfit("wrong-shape", f"an array of shape {numbers.shape} instead of {wanted}")
+    return _finite(numbers)
+
+
+def truth(answer, wanted):
+    """The answer as 0.0 or 1.0; raises Unfit when it is neither true nor false."""
+    value = answer.item() if isinstance(answer, np.ndarray) and answer.size == 1 else answer
+    if isinstance(value, (bool, int, float)) and value in (0, 1):
+        return np.float64(value)
+    raise Unfit("wrong-type", f"{type_in_words(answer)} instead of {wanted}")
+
+
+def fields(answer, wanted, **letters):
+    """The fields of a message as arrays, {field: array}; `letters` are the numbers in each: position="xyz".
+
+    Raises Unfit when one is not there, or holds something else than these numbers.
+    """
+    if not all(hasattr(answer, name) for name in letters):
+        raise Unfit("wrong-type", f"{type_in_words(answer)} instead of {wanted}")
+    return {name: _components(getattr(answer, name), name, of) for name, of in letters.items()}
+
+
+def _components(message, name, letters):
+    if not all(hasattr(message, letter) for letter in letters):
+        filled = ", ".join(f"{name}.{letter}" for letter in letters)
+        raise Unfit("wrong-type", f"{type_in_words(message)} in the field {name}; fill in {filled}")
+    values = [getattr(message, letter) for letter in letters]
+    for index, (letter, value) in enumerate(zip(letters, values)):
+        if isinstance(value, np.ndarray) and value.size == 1:
+            values[index] = value = value.item()
+        if not isinstance(value, (bool, int, float)):
+            raise Unfit("wrong-type", f"{type_in_words(value)} instead of a number in {name}.{letter}")
+    return _finite(np.array(values, dtype=np.float64))
+
+
+def _finite(numbers):
+    if not np.all(np.isfinite(numbers)):
+        raise Unfit("not-finite", "NaN or infinity")
+    return numbers
+
+
+def type_in_words(answer):
+    """A decoded answer's type, for messages: "a list", "an array of shape (4, 4)"."""
+    if isinstance(answer, np.ndarray):
+        return f"an array of shape {answer.shape}"
+    name = answer.type_name if isinstance(answer, codec.Other) else type(answer).__name__
+    if name.startswith("array"):
+        return f"an {name}"
+    return f"{'an' if name[:1].lower() in 'aeiou' else 'a'} {name}"

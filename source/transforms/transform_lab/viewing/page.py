@@ -1,0 +1,170 @@
+"""Draws a scene as a page: meshcat's viewer, without its server, over a still picture.
+
+The page needs no network and no port. The viewer's script, which meshcat brings along, is compressed into it. Where
+scripts or WebGL are missing the frame stays clear, and where `<iframe>` is not allowed it is taken out: in both cases
+the picture remains.
+"""
+
+import base64
+import functools
+import gzip
+import hashlib
+import html
+import json
+import math
+from importlib import resources
+from pathlib import Path
+
+import numpy as np
+
+from .camera import FIELD_OF_VIEW, NEAREST, VIEWS, Camera
+from .drawing import grid
+from .meshcat_commands import block, changes, delete, properties, set_object, set_property, set_transform
+from .shapes import BESIDE
+from .shapes import path as node_path
+
+ASPECT = 1.6  # width by height of what is drawn
+MOST_CHOICES = 40  # of fixed frames to choose from
+ROW = 30  # height of a row of controls, in pixels
+HERE = Path(__file__).parent
+
+
+@functools.cache
+def viewer_script():
+    """Return meshcat's JavaScript viewer and the code of these pages, compressed, as base64 text."""
+    meshcat = resources.files("meshcat").joinpath("viewer", "dist", "main.min.js").read_bytes()
+    return _packed(meshcat + b"\n" + (HERE / "page.js").read_bytes())
+
+
+def _packed(data):
+    return base64.b64encode(gzip.compress(data, 9, mtime=0)).decode("ascii")
+
+
+def labels(nodes):
+    """Return the labels of `nodes` as the page takes them: first those that have a fixed place."""
+    found = [
+        {
+            "path": f"meshcat/{node.path}",
+            "text": label.text,
+            "position": np.round(label.position, 6).tolist(),
+            "beside": label.beside,
+            "height": label.height,
+            "color": "rgb({:.0f} {:.0f} {:.0f})".format(*(255 * value for value in label.color[:3])),
+        }
+        for node in nodes
+        for label in node.labels
+    ]
+    return sorted(found, key=lambda label: label["beside"])
+
+
+def render(drawing, fixed_frame, seen_from, motion=None, states=(), live=None):
+    """Return the interactive page (text) of a Drawing. It shows no still picture.
+
+    `seen_from` is one of camera.VIEWS; `states` are Drawings of the same scene that `motion`, a Motion, goes through;
+    `live` is the name under which the kernel sends changes.
+    """
+    drawings, found = [drawing, *states], labels(drawing.nodes)
+    commands, frames, top = [], [], text_height(drawings)
+    there = [name for name in drawing.frames if all(name in d.frames for d in drawings)][:MOST_CHOICES]
+    for i, name in enumerate(there):
+        seen = np.concatenate([d.seen_from(name) for d in drawings])
+        commands.append(set_object(f"grid{i}", ("lines", grid(seen)[0].tobytes())))
+        commands.append(set_property(f"grid{i}/<object>", "renderOrder", -1.0))  # first, so that all else covers it
+        cameras = {view: Camera(seen, ASPECT, view, top) for view in VIEWS}
+        frames.append({
+            "name": name,
+            "path": f"meshcat/{node_path('frames', name)}",
+            "cameras": {v: [_short(c.eye), _short(c.target), float(c.distance)] for v, c in cameras.items()},
+        })  # fmt: skip
+    commands += [set_property(path, "visible", False) for path in ("Grid", "Axes", "Background")]
+    base = properties(drawing.nodes)
+    blocks = [block(commands + changes({}, base))]
+    moving, told = _add_states(blocks, base, found, states)
+    view = {
+        "states": told,
+        "moving": moving,
+        "start": motion.start if states else 0,
+        "seconds": motion.seconds if motion else None,
+        "controls": [control.as_json() for control in motion.controls] if motion else [],
+        "live": live,
+        "frames": frames,
+        "fixed": there.index(fixed_frame) if fixed_frame in there else 0,
+        "seenFrom": seen_from,
+        "fov": math.degrees(FIELD_OF_VIEW),
+        "nearest": NEAREST,
+        "labels": found,
+        "beside": BESIDE,
+        "text": drawing.text,
+    }
+    scene = _packed(block([json.dumps(view).encode()]) + b"".join(blocks))
+    script = viewer_script()
+    version = hashlib.sha256(script.encode()).hexdigest()[:12]
+    page = (HERE / "page.html").read_text(encoding="utf-8").replace("ROW", str(ROW), 1)
+    return page.replace("PAGE", json.dumps({"version": version, "script": script, "scene": scene}), 1)
+
+
+def _add_states(blocks, base, base_labels, drawings):
+    """Append a block for each of `drawings`; return the paths that move, and what else the page is told of each.
+
+    A block holds all that differs between any two states, so the states can be shown in any order.
+    """
+    states = [properties(drawing.nodes) for drawing in drawings]
+    every = dict.fromkeys(path for state in (base, *states) for path in state)
+    varying = [path for path in every if not all(_same(base.get(path), state.get(path)) for state in states)]
+    moving = [path for path in varying if sum(path in state for state in states) > 1]
+    looks = {path: {state[path][0] if path in state else "none" for state in (base, *states)} for path in varying}
+    told = []
+    for drawing, state in zip(drawings, states):
+        commands = [delete(path) for path in varying if path not in state]
+        for path in varying:
+            if path in state and len(looks[path]) > 1 and state[path][0] is not None:
+                commands.append(set_object(path, state[path][0]))
+            if path in state:
+                commands.append(set_transform(path, state[path][1]))
+        blocks.append(block(commands))
+        told.append({"moving": [i for i, path in enumerate(moving) if path in state], "text": drawing.text})
+        if (found := labels(drawing.nodes)) != base_labels:
+            told[-1]["labels"] = found
+    return moving, told
+
+
+def _same(one, other):
+    if one is None or other is None:
+        return one is other
+    return one[0] == other[0] and np.array_equal(one[1], other[1])
+
+
+def text_height(drawings):
+    """Return the part of the picture's height, from 0 to 1, that the longest text of `drawings` takes at the top."""
+    lines = max(drawing.text.count("\n") + 1 if drawing.text else 0 for drawing in drawings)
+    return min(0.02 + 0.035 * lines, 0.4) if lines else 0.0
+
+
+def over_picture(page, picture, description, caption, rows):
+    """Return HTML that shows `page` in a frame over `picture` (PNG bytes), whose alternative text is `description`.
+
+    `rows` of controls stand below the picture.
+    """
+    source = base64.b64encode(picture).decode("ascii")
+    return (
+        '<figure style="margin: 0; max-width: 760px">'
+        f'<div style="position: relative; aspect-ratio: {ASPECT:g}; background: white; margin-bottom: {rows * ROW}px">'
+        f'<img src="data:image/png;base64,{source}" alt="{html.escape(description)}" width="100%">'
+        f'<iframe srcdoc="{html.escape(page)}" title="{html.escape(caption)}" loading="lazy" style="position: absolute;'
+        f' left: 0; top: 0; width: 100%; height: calc(100% + {rows * ROW}px); border: 0"></iframe>'
+        f"</div><figcaption>{html.escape(caption)}</figcaption></figure>"
+    )
+
+
+def still(picture, description, caption):
+    """Return HTML that shows `picture` (PNG bytes), whose alternative text is `description`."""
+    source = base64.b64encode(picture).decode("ascii")
+    width = min(640, int.from_bytes(picture[16:20], "big"))  # a PNG's own, in its header
+    return (
+        f'<figure style="margin: 0; max-width: {width}px"><img src="data:image/png;base64,{source}"'
+        f' alt="{html.escape(description)}" width="100%"><figcaption>{html.escape(caption)}</figcaption></figure>'
+    )
+
+
+def _short(values):
+    return np.round(values, 6).tolist()

@@ -1,0 +1,399 @@
+"""What a student sees of `check`: right, wrong, not done, and every way to call it wrongly; as text and as HTML."""
+
+import re
+
+import numpy as np
+import pytest
+from IPython.core.interactiveshell import InteractiveShell
+from IPython.utils.capture import capture_output
+from support import key_of
+from transform_lab import Point, Pose, Quaternion, check, once_done, tft
+from transform_lab.check import CheckFailed
+from transform_lab.judging import codec, comparison, panel
+from transform_lab.judging.calling import call
+from transform_lab.judging.verdict import Reply, Verdict, examine
+
+from autograder.exercises import EXERCISES
+
+
+@pytest.fixture
+def said(capsys):
+    return lambda: capsys.readouterr().out
+
+
+@pytest.fixture
+def shell():
+    """IPython, as a notebook has it."""
+    yield InteractiveShell.instance()
+    InteractiveShell.clear_instance()
+
+
+def to_pose(matrix):
+    return Pose(Point(*matrix[:3, 3]), Quaternion(*tft.quaternion_from_matrix(matrix)))
+
+
+def failing(name, function, said):
+    """What check prints about a wrong function, and the line it fails with."""
+    with pytest.raises(CheckFailed) as failure:
+        check(name, function)
+    assert failure.value._render_traceback_() == [str(failure.value)]
+    return said(), str(failure.value)
+
+
+def test_a_right_answer_gets_one_line(said):
+    check("transform_to_pose", to_pose)
+    assert said() == "transform_to_pose: all right.\n"
+
+
+def test_a_stub_is_not_done_yet_and_does_not_fail(said):
+    def stub(matrix):
+        raise NotImplementedError
+
+    check("transform_to_pose", stub)
+    assert said() == "transform_to_pose: not done yet.\n0 of 4 points\n"
+
+
+def test_a_wrong_answer_shows_what_is_right_what_was_expected_and_the_misconception(said):
+    def w_first(matrix):
+        x, y, z, w = tft.quaternion_from_matrix(matrix)
+        return Pose(Point(*matrix[:3, 3]), Quaternion(w, x, y, z))
+
+    text, line = failing("transform_to_pose", w_first, said)
+    assert line.startswith("transform_to_pose: not right yet (position right, orientation ")
+    assert "in another order than ROS's" in text
+    for label in ("  matrix", "2 of 4 points"):
+        assert label in text
+    assert re.search(r"position     expected  x \S+   y \S+   z \S+\n +yours     x \S+   y \S+   z \S+   right", text)
+    assert re.search(
+        r"orientation  expected  x \S+   y \S+   z \S+   w \S+\n +yours .*w \S+   off by \d+ degrees", text
+    )
+
+
+def test_small_readable_numbers(said):
+    text, _ = failing("rotation_about_z", lambda degrees: np.eye(3) * 0.123456789 - 1e-17, said)
+    assert "0.1235" in text and "0.12345" not in text
+    assert not re.search(r"-0\.?[\s\]]|\de-", text)
+
+
+@pytest.mark.parametrize(
+    "answer, misconception, words",
+    [
+        (None, "returned-none", "returned None"),
+        ("text", "wrong-type", "a str instead of a Pose"),
+        (np.eye(4), "wrong-type", "an array of shape (4, 4) instead of a Pose"),
+        (Pose(Point(0, 0, 0), np.zeros(4)), "wrong-type", "orientation.x"),
+        (Pose(Point(np.eye(2), 0, 0), Quaternion(0, 0, 0, 1)), "wrong-type", "position.x"),
+        (
+            Pose(Point([1, [2, 3]], 0, 0), Quaternion(0, 0, 0, 1)),
+            "wrong-type",
+            "a list instead of a number in position.x",
+        ),
+        (Pose(Point({1}, 0, 0), Quaternion(0, 0, 0, 1)), "wrong-type", "a set instead of a number in position.x"),
+        ([[[0] * 100] * 100] * 100, "wrong-type", "a list instead of a Pose"),
+        (np.zeros((0, 3)), "wrong-type", "an array of shape (0, 3)"),
+        (Pose(Point(float("nan"), 0, 0), Quaternion(0, 0, 0, 1)), "not-finite", "NaN"),
+    ],
+)
+def test_answers_of_another_kind_are_named(said, answer, misconception, words):
+    text, _ = failing("transform_to_pose", lambda matrix: answer, said)
+    assert words in text and "0 of 4 points" in text
+    verdict = examine("transform_to_pose", key_of("transform_to_pose"), lambda a, k: call(lambda matrix: answer, a, k))
+    assert verdict.misconceptions == (misconception,)
+
+
+def test_wrong_shapes_are_named(said):
+    text, _ = failing("make_transform", lambda R, p: np.eye(3), said)
+    assert "an array of shape (3, 3)" in text
+
+
+def test_an_error_of_the_students_is_shown_in_one_line(said):
+    def wrong(matrix):
+        return undefined_name  # noqa: F821
+
+    text, _ = failing("transform_to_pose", wrong, said)
+    assert "NameError: name 'undefined_name' is not defined" in text
+    assert ", in your line" not in text  # this file is no cell
+    assert "Each notebook starts empty" in text
+    assert "Traceback" not in text
+
+
+def test_an_error_is_shown_with_the_students_own_line(shell):
+    with capture_output() as shown:
+        shell.run_cell(
+            "from transform_lab import check\n"
+            "def transform_point(a_T_b, p_in_b):\n"
+            "    point = a_T_b @ p_in_b  # a comment\n"
+            "    return point[:3]\n"
+            "check('transform_point', transform_point)"
+        )
+    text = next(output.data["text/plain"] for output in shown.outputs)
+    assert "(size 3 is different from 4), in your line 3: `point = a_T_b @ p_in_b  # a comment`" in text
+
+
+def test_errors_are_counted_whatever_their_message(said):
+    def wrong(matrix):
+        raise ValueError(f"no {matrix[0, 3]}")
+
+    text, _ = failing("transform_to_pose", wrong, said)
+    assert "Your function raised an error: ValueError: no " in text
+
+    def wrong_sometimes(matrix):
+        return wrong(matrix) if matrix[0, 0] < -0.5 else to_pose(matrix)
+
+    text, _ = failing("transform_to_pose", wrong_sometimes, said)
+    assert re.search(r"raised an error in \d+ of 42 cases", text)
+
+
+def test_the_forgotten_fourth_coordinate_is_explained(said):
+    text, _ = failing("transform_point", lambda a_T_b, p_in_b: a_T_b @ p_in_b, said)
+    assert "what belongs in the fourth place?" in text
+
+
+def test_what_is_printed_while_checking_is_not_shown_but_known(said):
+    text, _ = failing("transform_point", lambda a_T_b, p_in_b: print("here:", p_in_b), said)
+    assert "here:" not in text and "only `return` hands it" in text
+
+
+def test_a_call_of_another_stub_is_no_stub(said):
+    def invert_transform(a_T_b):
+        raise NotImplementedError
+
+    text, _ = failing("relative_transform", lambda a_T_b, a_T_c: invert_transform(a_T_b) @ a_T_c, said)
+    assert "raised an error: NotImplementedError" in text and "works by itself" in text
+
+
+def test_an_interrupted_check_says_so(said):
+    def endless(*transforms):
+        raise KeyboardInterrupt
+
+    text, _ = failing("chain", endless, said)
+    assert "interrupted before it was done" in text and "loop that never ends" in text
+
+
+def test_an_exercise_without_arguments_does_not_show_its_answer(said):
+    text, _ = failing("hand_transform", lambda: np.eye(4), said)
+    assert "yours" in text and "expected" not in text
+
+
+def test_answers_that_look_alike_show_how_far_apart_they_are(said):
+    rotation = EXERCISES["rotation_about_z"].reference
+    text, _ = failing("rotation_about_z", lambda degrees: rotation(degrees + 1e-3), said)
+    assert "rotation: off by 0.001 degrees" in text
+    text, _ = failing("rotation_about_z", lambda degrees: rotation(degrees).round(4), said)
+    assert "Your answer is right, but rounded." in text
+
+
+@pytest.mark.parametrize(
+    "name, wrong, words",
+    [
+        (
+            "rotation_from_axes",
+            lambda x, y: np.column_stack((x, y, np.cross(y, x))),
+            "a mirror image, not a rotation: the axes are left",
+        ),
+        (
+            "rotation_from_axes",
+            lambda x, y: np.column_stack((x, y, x + y)),
+            "not a rotation: its columns are not all of",
+        ),
+        ("make_transform", lambda R, p: np.vstack((np.column_stack((R, p)), [0, 0, 0, 0])), "bottom row: wrong"),
+        (
+            "make_transform",
+            lambda R, p: np.vstack((np.column_stack((R, 0 * p)), [0, 0, 0, 1])),
+            "translation: off by 1.",
+        ),
+        ("transform_point", lambda T, p: T[:3, 3], "   off by "),
+        ("transform_to_pose", lambda T: Pose(Point(*T[:3, 3]), Quaternion()), "no orientation: all four numbers are 0"),
+        ("transform_to_pose", lambda T: Pose(Point(*T[:3, 3]), Quaternion(0, 0, 0, 2)), ", and of length 2"),
+        ("transform_to_pose", lambda T: Pose(Point(*T[:3, 3]), Quaternion(1e200, 0, 0, 1)), "and of length inf"),
+        ("transform_point", lambda T, p: ["0.1", "0.2", "0.3"], "a list instead of an array of 3 coordinates"),
+        ("transform_point", lambda T, p: np.zeros((500, 2)), "yours  an array of shape (500, 2)"),
+        ("is_rotation", lambda R: True, "  expected  False\n  yours     True"),
+        ("chain", lambda *transforms: transforms[0], "transforms[1]"),
+        ("is_rotation", lambda R: abs(np.linalg.det(R) - 1) < 1e-6, "not right yet (right in "),
+    ],
+)
+def test_how_far_an_answer_is_off(said, name, wrong, words):
+    text, _ = failing(name, wrong, said)
+    assert words in text
+
+
+# --- the picture ----------------------------------------------------------------------------------------------------
+
+
+def pictured(name, wrong):
+    verdict = examine(name, key_of(name), lambda args, kwargs: call(wrong, args, kwargs))
+    return comparison.scene(verdict)
+
+
+@pytest.mark.parametrize(
+    "name, wrong, frames, points",
+    [
+        ("rotation_about_z", lambda degrees: np.eye(3), {"b (expected)", "b (yours)"}, set()),
+        ("invert_transform", lambda T: T, {"a (expected)", "a (yours)"}, set()),
+        ("transform_point", lambda T, p: p, {"b"}, {"p (expected)", "p (yours)"}),
+        ("relative_transform", lambda B, C: C, {"a", "c (expected)", "c (yours)"}, set()),
+        ("object_in_gripper", lambda C, G, p: p, {"base", "camera"}, {"p (expected)", "p (yours)"}),
+        ("pre_grasp", lambda pose, distance=0.1: pose, {"object", "pre_grasp (expected)", "pre_grasp (yours)"}, set()),
+        ("chain", lambda *T: T[0] if len(T) < 4 else np.eye(4), {"last (expected)", "last (yours)", "link 1"}, set()),
+        ("hand_transform", lambda: np.eye(4), {"b (yours)"}, set()),  # what is expected is the solution
+    ],
+)
+def test_the_failing_case_is_drawn_as_frames(name, wrong, frames, points):
+    words = pictured(name, wrong).description()
+    assert set(re.findall(r"^frame (.+) in ", words, re.M)) == frames
+    assert set(re.findall(r"^point (.+) in ", words, re.M)) == points
+
+
+def test_the_expected_frame_is_where_it_should_be():
+    scene = pictured("object_in_gripper", lambda base_T_camera, base_T_gripper, p: p)
+    case = key_of("object_in_gripper")["cases"][0]
+    base_T_camera, base_T_gripper, p = map(codec.decode, case["args"])
+    assert np.allclose(scene.lookup("base", "camera"), base_T_camera)
+    assert np.allclose(scene.lookup("base", "gripper"), base_T_gripper)
+
+
+def test_columns_that_are_no_axes_are_drawn_as_arrows():
+    words = pictured("rotation_from_axes", lambda x, y: np.column_stack((x, y, x + y))).description()
+    assert set(re.findall(r"^arrow (.+) in ", words, re.M)) == {f"{letter} of b (yours)" for letter in "xyz"}
+
+
+@pytest.mark.parametrize(
+    "name, wrong",
+    [
+        ("is_rotation", lambda R: True),
+        ("transform_to_pose", lambda matrix: None),
+        ("transform_to_pose", lambda matrix: Pose()),  # no orientation
+        ("make_transform", lambda R, p: np.zeros((4, 4))),
+    ],
+)
+def test_what_cannot_be_drawn_is_not(name, wrong):
+    assert pictured(name, wrong) is None
+
+
+def test_the_picture_follows_the_panel_and_a_right_answer_has_none(shell):
+    with capture_output() as wrong:
+        shell.run_cell("import numpy as np\nfrom transform_lab import check\ncheck('invert_transform', lambda T: T)")
+    with capture_output() as right:
+        shell.run_cell("check('invert_transform', np.linalg.inv)")
+    (panel_shown,) = [
+        o.data["text/html"] for o in wrong.outputs if "text/html" in o.data and "<iframe" in o.data["text/html"]
+    ]
+    assert "a (expected)" in panel_shown and "data:image/png" in panel_shown
+    assert "Your answer is the transform itself" in panel_shown
+    assert all("<iframe" not in o.data.get("text/html", "") for o in right.outputs)
+
+
+def test_a_name_without_quotes(said):
+    with pytest.raises(CheckFailed, match="name in quotes first"):
+        check(to_pose, to_pose)
+
+
+def test_a_changed_argument_is_said_beside_what_else_is_wrong(said):
+    def right_but_spoils(matrix):
+        pose = to_pose(matrix)
+        matrix[0, 3] += 1
+        return pose
+
+    text, line = failing("transform_to_pose", right_but_spoils, said)
+    assert "changed one of its arguments" in text and "expected" not in text
+    assert line == "transform_to_pose: not right yet."
+
+    def base_frame_and_spoils(object_pose, distance=0.1):
+        object_pose.position.x -= distance
+        return object_pose
+
+    verdict = examine("pre_grasp", key_of("pre_grasp"), lambda a, k: call(base_frame_and_spoils, a, k))
+    assert verdict.misconceptions == ("input-mutated", "base-frame-offset")
+    assert verdict.credit == 0.0
+
+
+def test_the_call_instead_of_the_function(said):
+    with pytest.raises(CheckFailed, match=r'without parentheses: check\("make_transform", make_transform\)'):
+        check("make_transform", np.eye(4))
+
+
+def test_an_exercise_that_does_not_exist():
+    with pytest.raises(CheckFailed, match="no exercise called 'transform_to_poze'; there are rotation_about_z, "):
+        check("transform_to_poze", to_pose)
+
+
+def test_the_key_is_missing(monkeypatch, tmp_path):
+    import sys
+
+    module = sys.modules["transform_lab.check"]
+    monkeypatch.setattr(module, "KEY", tmp_path / "key.json")
+    module._key.cache_clear()
+    with pytest.raises(CheckFailed, match="fetch the assignment's folder again"):
+        check("transform_to_pose", to_pose)
+    module._key.cache_clear()
+
+
+def test_while_grading_check_has_no_opinion(said, monkeypatch):
+    monkeypatch.setenv("TRANSFORM_LAB_GRADING", "1")
+    check("transform_to_pose", lambda matrix: None)
+    assert said() == "transform_to_pose: the grader calls this function itself.\n"
+
+
+def test_once_done(said):
+    with once_done("chain"):
+        print("the picture")
+    assert said() == "the picture\n"
+    with once_done("chain"):
+        raise NotImplementedError
+    assert said() == "This part appears once chain is done.\n"
+    with once_done("chain"):
+        raise ValueError("no\nmatrix")
+    assert said() == "This part appears once chain is right; now it stops with ValueError: no matrix\n"
+
+
+def test_html_escapes_what_students_write():
+    def wrong(matrix):
+        raise ValueError("<script>alert(1)</script>")
+
+    verdict = examine("transform_to_pose", key_of("transform_to_pose"), lambda a, k: call(wrong, a, k))
+    assert "<script>" not in panel.html(verdict)
+    assert "&lt;script&gt;" in panel.html(verdict)
+
+
+def test_feedback_on_hidden_cases_has_no_numbers():
+    hidden = EXERCISES["transform_to_pose"]
+    verdict = examine("transform_to_pose", key_of("transform_to_pose"), lambda a, k: call(lambda m: Pose(), a, k))
+    assert verdict.failing is not None and hidden
+    for render in (panel.text, panel.html):
+        shown = render(verdict, numbers=False)
+        assert f"Kind of case: {verdict.failing['family']}." in shown
+        assert "expected" not in shown and "matrix:" not in shown
+
+
+@pytest.mark.parametrize(
+    "outcome, why, status, words",
+    [
+        ("timeout", "", "timeout", "did not finish in time."),
+        ("timeout", "the notebook's time was over", "timeout", "did not finish in time: the notebook's time was over."),
+        ("killed", "", "killed", "used too much."),
+        (
+            "killed",
+            "it used more than 2 GB of memory",
+            "killed",
+            "had to be stopped: it used more than 2 GB of memory.",
+        ),
+        ("undefined", "", "error", "There is no function called chain"),
+        ("not done", "", "error", "Not done yet"),
+    ],
+)
+def test_what_ends_an_examination(outcome, why, status, words):
+    calls = []
+
+    def answer(args, kwargs):
+        calls.append(args)
+        return Reply(outcome, error=why)
+
+    verdict = examine("chain", key_of("chain"), answer)
+    assert (verdict.status, verdict.credit, len(calls)) == (status, 0.0, 1)
+    assert words in verdict.says
+
+
+def test_a_verdict_is_right_only_with_all_the_credit():
+    assert Verdict("chain", credit=1.0).right
+    assert not Verdict("chain", credit=0.99).right

@@ -1,0 +1,169 @@
+"""Points as CSV: read back with the csv module, by the columns that Canvas and Moodle document."""
+
+import csv
+import io
+
+import pytest
+from support import run
+
+from autograder.bridge.gradebook import Writer
+from autograder.course import CourseError
+from autograder.grading.grade import Graded
+from autograder.grading.judge import Row
+from autograder.grading.marks import Marks
+from autograder.pages import export
+
+PEOPLE = {
+    "ada": {"first_name": "Ada", "last_name": "Lovelace", "email": "ada@example.org", "lms_user_id": "1815"},
+    "joerg": {"first_name": 'Jörg "Jojo"', "last_name": "Müller, Jr.", "email": "j@example.org", "lms_user_id": "3f2a"},
+    "zoë": {},
+}
+
+
+@pytest.fixture
+def graded(course):
+    """A course with three students in its gradebook, and a fourth who has handed nothing in."""
+    with Writer(course) as writer:
+        for student, known in PEOPLE.items():
+            put(writer, student, 1.5)
+            writer.gradebook.update_or_create_student(student, **known)
+        writer.gradebook.update_or_create_student(
+            "absent", first_name="Nobody", last_name="Here", email="n@example.org"
+        )
+    return course
+
+
+def put(writer, student, points, answered=True):
+    """Record a submission with so many points for the first exercise, and for every written question one point."""
+    rows = [Row("1_rotation", "rotation_about_z", points, 2.0, "graded", "degrees-as-radians")]
+    marks = {}
+    for name, released in writer.course.notebooks.items():
+        grades = [name for name, cell in released.cells.items() if cell.metadata.nbgrader.grade]
+        scores = {cell: 0.0 if cell in released.points else None for cell in grades}
+        comments = {cell: None for cell in released.cells}
+        marks[name] = Marks(scores, comments)
+    marks["1_rotation"].scores["rotation_about_z"] = points
+    notebooks = {name: released.text for name, released in writer.course.notebooks.items()}
+    writer.record(Graded(student, rows, notebooks, marks))
+
+
+def table(course, name, column="transforms"):
+    """The rows of a format, read back."""
+    with Writer(course) as writer:
+        found = export.collect(writer.gradebook)
+        return list(csv.reader(io.StringIO(export.text(course, writer.gradebook, found, name, column))))
+
+
+def remarks(course, name):
+    with Writer(course) as writer:
+        return list(export.remarks(export.collect(writer.gradebook), name))
+
+
+def test_a_plain_table(graded):
+    assert table(graded, "plain") == [
+        ["student", "score", "max_score", "needs_manual_grade"],
+        *([student, "1.5", "40.0", "yes"] for student in sorted(PEOPLE)),
+    ]
+
+
+def test_the_columns_of_canvas(graded):
+    assert table(graded, "canvas", "Transforms, part 1 (4711)") == [
+        ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", "Transforms, part 1 (4711)"],
+        ["Points Possible", "", "", "", "", "40.0"],
+        ["Lovelace, Ada", "1815", "", "ada", "", "1.5"],
+        # an id that only begins with a number would be read as 3
+        ['Müller, Jr., Jörg "Jojo"', "", "3f2a", "joerg", "", "1.5"],
+        ["", "", "", "zoë", "", "1.5"],
+    ]
+
+
+def test_the_columns_of_moodle(graded):
+    header, ada, joerg, zoe = table(graded, "moodle")
+    who = ["First name", "Last name", "Username", "ID number", "Email address"]
+    assert header == [*who, "transforms", "transforms (feedback)"]
+    assert ada[:6] == ["Ada", "Lovelace", "ada", "1815", "ada@example.org", "1.5"]
+    assert joerg[:6] == ['Jörg "Jojo"', "Müller, Jr.", "joerg", "3f2a", "j@example.org", "1.5"]
+    assert zoe[:6] == ["", "", "zoë", "", "", "1.5"]
+
+
+def test_the_feedback_for_moodle_names_what_was_found(course, hand_in, solved, sandboxed):
+    hand_in(course, "alice", {"3_chaining": solved["3_chaining"]})
+    assert run(course, "grade", "--no-feedback")[0] == 0
+    feedback = table(course, "moodle")[1][6]
+    assert "chain 2 of 2; transform_pose 2 of 2; invert_transform 0 of 2 (missing)" in feedback
+
+
+def test_late_work_is_exported_with_its_penalty(graded):
+    with Writer(graded) as writer:
+        for notebook in writer.gradebook.find_submission("transforms", "ada").notebooks:
+            notebook.late_submission_penalty = 0.2
+        writer.gradebook.db.commit()
+    assert {row[0]: row[1] for row in table(graded, "plain")[1:]}["ada"] == "0.5"
+    assert {row[3]: row[5] for row in table(graded, "canvas")[2:]}["ada"] == "0.5"
+
+
+def test_what_is_not_final_and_who_is_not_known_is_said(graded):
+    final, known = remarks(graded, "canvas")
+    assert "not final: written answers of 3 of 3 students wait" in final
+    assert "first_name, last_name, lms_user_id of 1 of 3 students" in known and "nbgrader db student import" in known
+    (final,) = remarks(graded, "plain")
+    with Writer(graded) as writer:
+        for grade in writer.gradebook.find_submission("transforms", "ada").notebooks[1].grades:
+            grade.needs_manual_grade = False
+        writer.gradebook.db.commit()
+    assert remarks(graded, "plain") == [final]  # two notebooks of hers still wait
+    with Writer(graded) as writer:
+        for notebook in writer.gradebook.find_submission("transforms", "ada").notebooks:
+            for grade in notebook.grades:
+                grade.needs_manual_grade = False
+        writer.gradebook.db.commit()
+    assert "written answers of 2 of 3 students" in remarks(graded, "plain")[0]
+
+
+FORMULAS = ['=HYPERLINK("http://example.org")', "+1+cmd|' /C calc'!A0", "-2+3", "@SUM(1)", " =1+1"]
+NO_FORMULAS = ["-", "+49 170 1234567", "O'Neil", "Müller-Lüdenscheidt", "-5"]
+
+
+def test_what_a_spreadsheet_would_run_is_refused(graded):
+    with Writer(graded) as writer:
+        for field in ("last_name", "email"):
+            for name in FORMULAS:
+                writer.gradebook.update_or_create_student("ada", **{**PEOPLE["ada"], field: name})
+                found = export.collect(writer.gradebook)
+                with pytest.raises(CourseError, match="a spreadsheet would run this as a formula"):
+                    export.text(graded, writer.gradebook, found, "moodle")
+                assert export.text(graded, writer.gradebook, found, "plain")  # it is not in there
+        for name in NO_FORMULAS:
+            writer.gradebook.update_or_create_student("ada", **{**PEOPLE["ada"], "last_name": name})
+            assert name in export.text(graded, writer.gradebook, export.collect(writer.gradebook), "moodle")
+
+
+def test_the_id_of_a_student_is_never_changed_but_refused(graded):
+    with Writer(graded) as writer:
+        put(writer, "=1+1", 2.0)
+    for name in export.FORMATS:
+        with pytest.raises(CourseError, match="=1\\+1.*renaming the folder in submitted/"):
+            table(graded, name)
+
+
+def test_the_command(graded):
+    code, said = run(graded, "export", "--format", "canvas", "--column", "Lab 3", "--output", "points.csv")
+    assert code == 0
+    assert said.splitlines()[0] == "points.csv is written." and "not final" in said
+    with open(graded.root / "points.csv", encoding="utf-8", newline="") as file:
+        assert next(csv.reader(file))[5] == "Lab 3"
+    code, said = run(graded, "export", "--output", "nowhere/points.csv")
+    assert code == 2 and "there is no folder nowhere" in said
+    code, said = run(graded, "export", "--format", "xml")
+    assert code == 2 and f"choose from {', '.join(export.FORMATS)}." in said
+
+
+def test_an_empty_gradebook_is_said(course):
+    assert table(course, "canvas")[2:] == []
+    assert remarks(course, "canvas") == ["Nobody is in the gradebook yet: run `python3 -m autograder grade` first."]
+
+
+def test_the_command_knows_every_format(course):
+    for name in export.FORMATS:
+        code, said = run(course, "export", "--format", name)
+        assert code == 0 and "needs_manual_grade" in said or "name" in said.lower()

@@ -1,0 +1,406 @@
+"""The real sandbox: what a notebook's process can do, and what it cannot reach."""
+
+import os
+from pathlib import Path
+
+import pytest
+from solutions.right import NAMES, RIGHT
+from support import ROOT, key_of
+from transform_lab.judging.verdict import examine
+
+from autograder.sandbox import Ended, Limits, Sandbox
+
+PACKAGE = ROOT / "source/transforms/transform_lab"
+QUICK = Limits(cell=4.0, call=2.0, grace=1.0)  # for loops to end soon; ample for the rest on a busy machine
+HANDED_IN = {"helper.py": b"answer = 42\n", "data/points.csv": b"1,2,3\n"}
+
+
+@pytest.fixture(scope="module")
+def sandbox(sandboxed):
+    with Sandbox(PACKAGE, HANDED_IN, QUICK) as box:
+        yield box
+
+
+@pytest.fixture(scope="module")
+def unprotected():
+    with Sandbox(PACKAGE, HANDED_IN, isolated=False) as box:
+        yield box
+
+
+def run(sandbox, *cells):
+    """The outputs of the last of these cells."""
+    with sandbox.notebook() as notebook:
+        for cell in cells:
+            result = notebook.run_cell(cell)
+    return result.outputs
+
+
+def value(sandbox, *cells):
+    (output,) = run(sandbox, *cells)
+    return output["data"]["text/plain"]
+
+
+def error(sandbox, *cells):
+    (output,) = run(sandbox, *cells)
+    return output["ename"]
+
+
+OUTPUTS = [
+    ("1 + 1", [("execute_result", "2")]),
+    ("1 + 1;", []),
+    ("print('a'); print('b')", [("stdout", "a\nb\n")]),
+    ("import sys; print('oh', file=sys.stderr)", [("stderr", "oh\n")]),
+    ("import os; _ = os.system('echo from a command')", [("stdout", "from a command\n")]),
+    ("display(3); 4", [("display_data", "3"), ("execute_result", "4")]),
+    ("h = display(1, display_id=True); h.update(2)", [("display_data", "2")]),
+    ("from IPython.display import clear_output\nprint(1); clear_output(); print(2)", [("stdout", "2\n")]),
+    ("import asyncio\nawait asyncio.sleep(0)\n5", [("execute_result", "5")]),
+    ("%%bash\necho shell", [("stdout", "shell\n")]),
+    ("import helper; helper.answer", [("execute_result", "42")]),
+    ("open('data/points.csv').read()", [("execute_result", "'1,2,3\\n'")]),
+    ("input('name?')", [("error", "StdinNotImplementedError")]),
+    ("1 / 0", [("error", "ZeroDivisionError")]),
+    ("def f(:", [("error", "SyntaxError")]),
+]
+
+
+def shown(outputs):
+    """What there is to see of outputs: (kind or stream, text)."""
+    found = []
+    for output in outputs:
+        if output["output_type"] == "stream":
+            found.append((output["name"], output["text"]))
+        elif output["output_type"] == "error":
+            found.append(("error", output["ename"]))
+        else:
+            found.append((output["output_type"], output["data"]["text/plain"]))
+    return found
+
+
+@pytest.mark.parametrize("cell, outputs", OUTPUTS)
+def test_cells_give_the_outputs_of_jupyter(sandbox, cell, outputs):
+    assert shown(run(sandbox, cell)) == outputs
+
+
+@pytest.mark.parametrize("cell, outputs", OUTPUTS)
+def test_cells_give_the_same_outputs_unprotected(unprotected, cell, outputs):
+    assert shown(run(unprotected, cell)) == outputs
+
+
+def test_helpers_may_have_the_names_of_the_graders_modules(sandboxed):
+    names = ("channel", "executor", "worker", "host")
+    with Sandbox(PACKAGE, {f"{name}.py": f"answer = {name!r}".encode() for name in names}, QUICK) as box:
+        for name in names:
+            assert value(box, f"import {name}; {name}.answer") == repr(name)
+
+
+def test_figures_are_shown_at_the_end_of_the_cell(sandbox):
+    with Sandbox(PACKAGE, limits=Limits()) as patient:
+        outputs = run(patient, "import matplotlib.pyplot as plt\nplt.plot([1, 2]);")
+    assert "image/png" in outputs[0]["data"]
+
+
+def test_a_function_is_called_with_plain_data(sandbox):
+    with sandbox.notebook() as notebook:
+        notebook.run_cell("def double(x, times=2):\n    print('noise')\n    return x * times")
+        reply = notebook.call("double", [{"array": [1.0, 2.0], "shape": [2]}], {"times": 3})
+        assert reply.outcome == "returned"
+        assert reply.value == {"array": [3.0, 6.0], "shape": [2]}
+        assert reply.arguments == [[{"array": [1.0, 2.0], "shape": [2]}], {"times": 3}]
+        assert notebook.call("absent", [], {}).outcome == "undefined"
+        assert notebook.run_cell("pass").outputs == []  # what a called function prints is shown to nobody
+
+
+def test_a_call_that_changes_its_argument_shows_it(sandbox):
+    with sandbox.notebook() as notebook:
+        notebook.run_cell("def spoil(x):\n    x += 1\n    return x")
+        reply = notebook.call("spoil", [{"array": [1.0], "shape": [1]}], {})
+        assert reply.arguments == [[{"array": [2.0], "shape": [1]}], {}]
+
+
+@pytest.mark.parametrize(
+    "body", ["raise ValueError('no')", "raise SystemExit", "raise BaseException('hm')", "exit(1 / 0)"]
+)
+def test_a_call_that_raises_says_so(sandbox, body):
+    with sandbox.notebook() as notebook:
+        notebook.run_cell(f"def f():\n    {body}")
+        assert notebook.call("f", [], {}).outcome == "raised"
+
+
+def test_an_endless_call_is_interrupted_and_the_notebook_goes_on(sandbox):
+    with sandbox.notebook() as notebook:
+        notebook.run_cell("def loop():\n    while True:\n        pass\ndef fine():\n    return 1")
+        assert notebook.call("loop", [], {}).outcome == "timeout"
+        assert not notebook.gone
+        assert notebook.call("fine", [], {}).value == 1
+
+
+def test_an_endless_cell_is_interrupted(sandbox):
+    with sandbox.notebook() as notebook:
+        result = notebook.run_cell("import time\nwhile True:\n    time.sleep(0.01)")
+        assert result.outputs[-1]["ename"] == "Interrupted"
+        assert "took too long" in result.outputs[-1]["evalue"]
+        assert notebook.run_cell("7").outputs[0]["data"]["text/plain"] == "7"
+
+
+def test_a_cell_that_heeds_no_interrupt_is_stopped(sandbox):
+    deaf = "import signal, time\nsignal.signal(signal.SIGINT, signal.SIG_IGN)\nwhile True:\n    time.sleep(0.01)"
+    with sandbox.notebook() as notebook:
+        with pytest.raises(Ended) as ended:
+            notebook.run_cell(deaf)
+    assert ended.value.status == "timeout"
+    assert value(sandbox, "'next'") == "'next'"
+
+
+@pytest.mark.parametrize(
+    "cell", ["import os; os._exit(0)", "import os; os.abort()", "import os; os.kill(os.getpid(), 9)"]
+)
+def test_a_process_that_ends_itself_costs_nobody_else(sandbox, cell):
+    with sandbox.notebook() as notebook:
+        with pytest.raises(Ended) as ended:
+            notebook.run_cell(cell)
+    assert ended.value.status == "killed"
+    assert value(sandbox, "'next'") == "'next'"
+
+
+def test_a_sandbox_that_was_brought_down_is_started_again(sandbox):
+    with sandbox.notebook() as notebook:
+        with pytest.raises(Ended):
+            notebook.run_cell("import os, time; os.kill(os.getppid(), 9); os.kill(-1, 9); time.sleep(5)")
+    assert value(sandbox, "'next'") == "'next'"
+
+
+def test_exit_ends_the_notebook(sandbox):
+    with sandbox.notebook() as notebook:
+        assert notebook.run_cell("exit()").ended
+
+
+def test_memory_is_limited(sandbox):
+    with Sandbox(PACKAGE, limits=Limits(memory=1_000_000_000)) as small:
+        assert error(small, "x = bytearray(3_000_000_000)") == "MemoryError"
+
+
+def test_forks_are_limited(sandbox):
+    bomb = "import os, time\nn = 0\nwhile True:\n    if os.fork() == 0:\n        time.sleep(60)\n        os._exit(0)\n"
+    with Sandbox(PACKAGE, limits=Limits(cell=5.0, processes=20)) as small:
+        assert error(small, bomb) == "BlockingIOError"
+        assert value(small, "'next'") == "'next'"
+
+
+FORKED = (
+    "import os, time\nfor _ in range({count}):\n    if os.fork() == 0:\n        {work}\n        os._exit(0)\n{after}"
+)
+
+
+def killed(limits, cell):
+    """Why a cell's sandbox was ended, in words."""
+    with Sandbox(PACKAGE, limits=limits) as box, box.notebook() as notebook:
+        with pytest.raises(Ended) as ended:
+            notebook.run_cell(cell)
+            for _ in range(100):  # what it left running is seen while the next cells run
+                notebook.run_cell("import time; time.sleep(0.1)")
+    assert ended.value.status == "killed"
+    return ended.value.reason
+
+
+def test_memory_of_many_processes_is_limited(sandboxed):
+    """Each stays below its own limit, all together do not."""
+    cell = FORKED.format(count=8, work="x = bytearray(100_000_000); time.sleep(60)", after="time.sleep(60)")
+    assert killed(Limits(memory=600_000_000), cell) == "it used more than 0.6 GB of memory"
+
+
+def test_processor_time_is_limited(sandboxed):
+    """Of all processes together, also of those that a cell leaves behind."""
+    cell = FORKED.format(count=4, work="os.setsid()\n        while True: pass", after="")
+    assert killed(Limits(cpu=3.0), cell) == "it used more than 3 s of processor time"
+
+
+def test_the_number_of_files_is_limited(sandboxed):
+    cell = "for n in range(10**9):\n    open(f'/tmp/{n}', 'w').close()"
+    assert killed(Limits(files=2_000), cell) == "it used more than 2000 files"
+
+
+def test_time_without_a_processor_does_not_count(sandbox):
+    """Beside a notebook that keeps its processor busy, an honest function gets its whole time."""
+    processor = {min(os.sched_getaffinity(0))}
+    hog = FORKED.format(count=8, work="os.setsid()\n        while True: pass", after="")
+    honest = "import time\ndef f():\n    while time.process_time() < start + 0.7:\n        pass\n    return 'done'"
+    with Sandbox(PACKAGE, limits=Limits(cpu=1000.0)) as busy, busy.notebook() as hogs:
+        os.sched_setaffinity(hogs.pid, processor)
+        hogs.run_cell(hog)
+        with Sandbox(PACKAGE, limits=Limits(call=1.2)) as box, box.notebook() as notebook:
+            os.sched_setaffinity(notebook.pid, processor)
+            notebook.run_cell(f"{honest}\nstart = time.process_time()")
+            assert notebook.call("f", [], {}).value == "done"
+
+
+@pytest.mark.parametrize(
+    "attempt",
+    [
+        "socket.socket(40, socket.SOCK_STREAM)",  # AF_VSOCK, which knows no network namespace
+        "socket.socket(socket.AF_INET)",
+        "socket.socket(socket.AF_NETLINK, socket.SOCK_RAW)",
+        "socket.socketpair()[0].setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 100_000_000)",
+        "os.memfd_create('x')",
+        "fcntl.fcntl(os.pipe()[1], 1031, 1_000_000)",
+        "call('shmget', 0, 1000, 0o1600)",
+        "call('unshare', 0x10000000)",
+        "call('mount', b'none', b'/tmp', b'tmpfs', 0, None)",
+        "call('ptrace', 0, 0, None, None)",
+        "call('chroot', b'/tmp')",
+        "call('setuid', 0)",
+        "call('syscall', 425, 1, None)",  # io_uring_setup
+        "call('syscall', 321, 0, None, 0)",  # bpf
+        "call('syscall', 323, 0)",  # userfaultfd
+        "call('syscall', 248, b'user', b'x', b'y', 1, -2)",  # add_key
+    ],
+)
+def test_the_kernel_refuses_what_no_notebook_needs(sandbox, attempt):
+    define = (
+        "import ctypes, fcntl, os, socket\n"
+        "def call(name, *arguments):\n"
+        "    if getattr(ctypes.CDLL(None, use_errno=True), name)(*arguments) == -1:\n"
+        "        raise OSError(ctypes.get_errno(), name)\n"
+    )
+    assert error(sandbox, define + attempt) in ("OSError", "PermissionError")
+
+
+def test_output_is_limited(sandbox):
+    with Sandbox(PACKAGE, limits=Limits()) as box:
+        outputs = run(box, "for _ in range(100):\n    print('x' * 100_000)")
+    assert sum(len(output["text"]) for output in outputs) < 2_500_000
+    assert outputs[-1]["text"] == "[more output than the grader keeps]\n"
+
+
+def test_a_notebook_sees_no_other_notebooks_names(sandbox):
+    with sandbox.notebook() as notebook:
+        notebook.run_cell("secret = 1")
+    assert error(sandbox, "secret") == "NameError"
+
+
+def test_what_a_notebook_leaves_running_ends_with_it(sandbox):
+    daemon = "import os, time\nif os.fork() == 0:\n    os.setsid()\n    time.sleep(60)\n    os._exit(0)"
+    count = "len([p for p in __import__('os').listdir('/proc') if p.isdigit()])"
+    alone = value(sandbox, count)
+    run(sandbox, daemon)
+    assert value(sandbox, count) == alone
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "transform_lab/key.json",
+        str(ROOT / "gradebook.db"),
+        str(ROOT / "autograder"),
+        str(ROOT / "source"),
+        str(ROOT / "README.md"),
+        "/grader/../autograder",
+        "/etc/passwd",
+        "/proc/1/environ",
+        str(Path.home() / ".bashrc"),
+    ],
+)
+def test_what_must_not_be_seen_is_not_there(sandbox, path):
+    cell = f"try:\n    print(bool(open({path!r}).read()))\nexcept OSError as e:\n    print(type(e).__name__)"
+    (output,) = run(sandbox, cell)
+    assert output["text"].strip() in ("FileNotFoundError", "PermissionError", "False")
+
+
+def test_nothing_of_the_environment_is_seen(sandbox, monkeypatch):
+    monkeypatch.setenv("A_SECRET", "of the grader")
+    everybody = (
+        "import glob\nfor path in glob.glob('/proc/[0-9]*/environ'):\n    try:\n        print(open(path).read())\n"
+    )
+    everybody += "    except OSError as error:\n        print(error)\n"
+    with Sandbox(PACKAGE, limits=QUICK) as box:
+        assert "A_SECRET" not in value(box, "import os; dict(os.environ)")
+        assert "A_SECRET" not in run(box, everybody)[0]["text"]
+
+
+def test_there_is_no_network(sandbox):
+    cell = "import socket\nsocket.create_connection(('127.0.0.1', 22), timeout=1)"
+    (output,) = run(sandbox, cell)
+    assert output["ename"] == "OSError" and "Network is unreachable" in output["evalue"]
+    assert value(sandbox, "import os; sorted(os.listdir('/sys/class/net')) if os.path.exists('/sys') else []") == "[]"
+
+
+def test_nobody_in_particular_runs_the_code(sandbox):
+    assert value(sandbox, "import os; os.getuid() != 0 or os.geteuid() != 0") == "True"
+    for folder in ("/", "/dev", "/etc", "/usr/bin", "transform_lab"):
+        assert error(sandbox, f"open({folder!r} + '/new', 'w')") in ("OSError", "PermissionError")
+
+
+def test_no_process_and_no_file_is_left_behind(sandbox):
+    with Sandbox(PACKAGE, limits=QUICK) as box, box.notebook() as notebook:
+        notebook.run_cell("open('mine.txt', 'w').write('x'); open('/tmp/mine.txt', 'w').write('x');")
+        notebook.run_cell("import subprocess; subprocess.Popen(['sleep', '1234.5'], start_new_session=True)")
+        processes = notebook.pid, notebook.namespaces.pid, notebook.namespaces.process.pid
+        assert all(Path(f"/proc/{process}").exists() for process in processes)
+        assert _running("1234.5")
+    assert not any(Path(f"/proc/{process}").exists() for process in processes)
+    assert not _running("1234.5")
+    assert not Path("/tmp/mine.txt").exists()
+
+
+def _running(argument):
+    """Whether any process of this machine has that argument."""
+    for path in Path("/proc").glob("[0-9]*/cmdline"):
+        try:
+            if argument.encode() in path.read_bytes().split(b"\0"):
+                return True
+        except OSError:
+            continue  # it has just ended
+    return False
+
+
+def test_files_of_one_notebook_are_not_seen_by_the_next(sandbox):
+    run(sandbox, "open('mine.txt', 'w').write('x'); open('/dev/shm/mine.txt', 'w').write('x')")
+    assert value(sandbox, "import os; [os.path.exists(path) for path in ('mine.txt', '/dev/shm/mine.txt')]") == (
+        "[False, False]"
+    )
+
+
+def test_forged_answers_are_passed_over(sandbox):
+    """A frame written to the grader's socket beforehand lacks the next request's nonce."""
+    forge = (
+        "import json, os, stat, struct\n"
+        "frame = json.dumps({'nonce': 'guess', 'outcome': 'returned', 'value': 'forged', 'arguments': [[], {}]}).encode()\n"
+        "for fd in range(3, 40):\n"
+        "    try:\n"
+        "        if stat.S_ISSOCK(os.fstat(fd).st_mode):\n"
+        "            os.write(fd, struct.pack('>I', len(frame)) + frame)\n"
+        "    except OSError:\n"
+        "        continue\n"
+        "def f():\n"
+        "    return 'honest'\n"
+    )
+    with sandbox.notebook() as notebook:
+        notebook.run_cell(forge)
+        assert notebook.call("f", [], {}).value == "honest"
+
+
+def test_a_notebook_has_a_budget_of_time(sandbox):
+    with Sandbox(PACKAGE, limits=Limits(cell=60.0, notebook=2.0, grace=1.0)) as box:
+        with box.notebook() as notebook:
+            assert notebook.run_cell("import time; time.sleep(50)").outputs[-1]["ename"] == "Interrupted"
+            assert notebook.exhausted
+            with pytest.raises(Ended):
+                notebook.run_cell("1")
+
+
+def test_without_bubblewrap_the_same_code_runs_unprotected():
+    with Sandbox(PACKAGE, isolated=False) as box:
+        assert value(box, "import os; os.getuid()") == str(os.getuid())
+        folder = value(box, "import os; os.getcwd()").strip("'")
+    assert not Path(folder).exists()
+
+
+def test_right_solutions_are_right_in_the_sandbox_too(sandbox):
+    """Callable objects, caches, helpers of other cells and the rest: called by name, in the notebook's own process."""
+    source = (ROOT / "tests/solutions/right.py").read_text(encoding="utf-8")
+    with sandbox.notebook() as notebook:
+        assert not [output for output in notebook.run_cell(source).outputs if output["output_type"] == "error"]
+        for index, (name, label) in enumerate(zip((name for name, _ in RIGHT), NAMES)):
+            notebook.run_cell(f"{name} = RIGHT[{index}][1]")
+            verdict = examine(name, key_of(name, 5), lambda args, kwargs, name=name: notebook.call(name, args, kwargs))
+            assert verdict.right, (name, label, verdict.says)
