@@ -13,19 +13,22 @@ NO_CASE = "No case found that tells it apart: perhaps it is {}."
 
 
 def summary(proofs, seeds):
-    """The Table with a row for each exercise."""
+    """The Table with a row for each exercise; a number alone stands for all of them."""
+    heads = "exercise", "misconceptions", "named", "mutants", "equivalent", "right", "wrong", "open"
+    title = f"caught, named or accepted on the cases of all {seeds} seeds"
     table = Table(
-        "exercise", "misconceptions", "named", "mutants", "equivalent", "right", "wrong", "open",
-        box=None, pad_edge=False, title=f"caught, named and accepted on the cases of all {seeds} seeds", title_justify="left",
-    )  # fmt: skip
-    for column in table.columns:
-        column.no_wrap = True
+        *(Column(head, no_wrap=True) for head in heads),
+        title=title,
+        title_justify="left",
+        box=None,
+        padding=(0, 1, 0, 0),
+    )
     for proof in proofs:
         misconceptions = proof.of("misconception")
         table.add_row(
             proof.exercise.name,
             _share(misconceptions),
-            f"{len(misconceptions) - len(proof.misnamed)} of {len(misconceptions)}",
+            _all_or_some([not misnamed(each, what) for each, what in misconceptions]),
             *(_share(proof.of(kind)) for kind in ("mutant", "equivalent", "right", "wrong")),
             str(proof.open or ""),
         )
@@ -33,8 +36,11 @@ def summary(proofs, seeds):
 
 
 def _share(found):
-    good = sum(not (what.refused if each.right else what.accepted) for each, what in found)
-    return f"{good} of {len(found)}" if found else "none"
+    return _all_or_some([not (what.refused if each.right else what.accepted) for each, what in found])
+
+
+def _all_or_some(good):
+    return str(len(good)) if all(good) else f"{sum(good)} of {len(good)}"
 
 
 def misconceptions(proof):
