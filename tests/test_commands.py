@@ -12,6 +12,7 @@ import pytest
 from support import ASKED, path_without, points, points_by_hand, run, scores, statuses, verdicts
 
 from autograder.bridge.gradebook import Writer
+from autograder.course import Course
 from autograder.exercises import EXERCISES
 
 
@@ -87,27 +88,34 @@ def test_a_notebook_of_another_name_is_said(course, hand_in, solved, sandboxed):
     assert set(statuses(course, "alice").values()) == {"missing"}
 
 
-@pytest.mark.parametrize(
-    "student, body, verdict",
-    [
-        ("loop", "while True: pass", ("timeout", "")),
-        ("exits", "import os; os._exit(0)", ("killed", "")),
-        ("raises", "return undefined", ("error", "")),
-        ("prints", "print(degrees)", ("graded", "returned-none")),
-    ],
-)
-def test_an_answer_that_does_not_end_well_costs_itself_alone(
-    course, hand_in, solved, sandboxed, student, body, verdict
-):
-    notebook = nbformat.read(solved["1_rotation"], as_version=4)
-    (cell,) = (
-        c for c in notebook.cells if c.metadata.get("nbgrader", {}).get("grade_id") == "rotation_about_z-solution"
-    )
-    cell.source = f"def rotation_about_z(degrees):\n    {body}"
-    hand_in(course, student, {"1_rotation": notebook})
+ENDINGS = [
+    ("loop", "while True: pass", ("timeout", "")),
+    ("exits", "import os; os._exit(0)", ("killed", "")),
+    ("raises", "return undefined", ("error", "")),
+    ("prints", "print(degrees)", ("graded", "returned-none")),
+]
+
+
+@pytest.fixture(scope="module")
+def ended(released, hand_in, sandboxed, tmp_path_factory):
+    """A graded class of those whose answers end so; not to be changed by tests."""
+    course = Course(shutil.copytree(released.root, tmp_path_factory.mktemp("ended") / "course"))
+    for student, body, _ in ENDINGS:
+        notebook = nbformat.read(course.source / "1_rotation.ipynb", as_version=4)
+        (cell,) = (
+            c for c in notebook.cells if c.metadata.get("nbgrader", {}).get("grade_id") == "rotation_about_z-solution"
+        )
+        cell.source = f"def rotation_about_z(degrees):\n    {body}"
+        hand_in(course, student, {"1_rotation": notebook})
     code, said = run(course, "grade", "--no-feedback")
     assert code == 0, said
-    row = next(row for row in verdicts(course) if row["exercise"] == "rotation_about_z")
+    return course
+
+
+@pytest.mark.parametrize("student, body, verdict", ENDINGS)
+def test_an_answer_that_does_not_end_well_costs_itself_alone(ended, student, body, verdict):
+    course = ended
+    row = next(row for row in verdicts(course) if (row["student"], row["exercise"]) == (student, "rotation_about_z"))
     assert (row["status"], row["misconception"]) == verdict
     assert scores(course, student)["rotation_about_z"] == 0
     assert (
@@ -119,7 +127,7 @@ def test_an_answer_that_does_not_end_well_costs_itself_alone(
         assert not stopped or "rotation_about_z(" in cell.source, "an innocent cell was left out"
 
 
-def test_no_submitted_folder(course, sandboxed):
+def test_no_submitted_folder(course):
     code, said = run(course, "grade")
     assert code == 2
     assert "There is no submitted/ folder" in said and "submitted/STUDENT/transforms/" in said

@@ -27,7 +27,7 @@ each_student = pytest.mark.parametrize("path", PATHS, ids=lambda path: path.stem
 def course(released, tmp_path_factory):
     """A course of its own, released, with the class enrolled."""
     course = Course(shutil.copytree(released.root, tmp_path_factory.mktemp("demo") / "course"))
-    (course.package / "__pycache__").mkdir()
+    (course.package / "__pycache__").mkdir(exist_ok=True)
     (course.package / "__pycache__" / "check.pyc").write_bytes(b"made at run time")
     enroll(course)
     return course

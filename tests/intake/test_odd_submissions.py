@@ -175,16 +175,18 @@ def test_a_damaged_gradebook_is_said(course, hand_in, solved, sandboxed):
 
 
 def test_a_damaged_record_counts_as_not_graded(course, hand_in, solved, sandboxed):
-    hand_in(course, "ann", {ONE: solved[ONE]})
+    damaged = {"ann": {"statuses": {}}, "bob": [], "cid": {"rows": [1]}, "dan": {"rows": []}}
+    for student in (*damaged, "eve"):
+        hand_in(course, student, {ONE: solved[ONE]})
     assert run(course, "grade", "--no-feedback")[0] == 0
-    path = course.autograded("ann") / f"{ONE}.ipynb"
-    for damage in ({"statuses": {}}, [], {"rows": [1]}, {"rows": []}):
+    for student, damage in damaged.items():
+        path = course.autograded(student) / f"{ONE}.ipynb"
         notebook = nbformat.read(path, as_version=4)
         notebook.metadata["transform_lab"] = damage
         nbformat.write(notebook, path)
-        assert run(course, "report")[0] == 0
-        code, said = run(course, "grade", "--no-feedback")
-        assert code == 0 and "1 graded" in said
+    assert run(course, "report")[0] == 0
+    code, said = run(course, "grade", "--no-feedback")
+    assert code == 0 and "4 graded" in said and "1 unchanged" in said
 
 
 @pytest.mark.parametrize(
