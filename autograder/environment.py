@@ -143,7 +143,7 @@ def _install(folder, packages, lock):
 
 
 def _with_uv(base, folder, packages, lock):
-    # Beside this interpreter, too: its environment need not be active.
+    # Beside this interpreter, too, whose environment need not be active.
     uv = shutil.which("uv", path=os.pathsep.join((os.environ.get("PATH", ""), str(Path(sys.executable).parent))))
     if not uv or _version(uv) < OLDEST_UV:
         pinned = re.search(r"^(uv==\S+).*((?: \\\n +--hash=\S+)+)", lock, re.MULTILINE)
@@ -156,7 +156,10 @@ def _with_uv(base, folder, packages, lock):
         _run([*_pip(base, folder), "install", *options])
         uv = folder / "bin" / "uv"
     _say("  installing the packages with uv …")
-    _run([uv, "pip", "install", "--python", folder / "bin" / "python", *packages], "Downloaded", "Downloading")
+    # The first import compiles what is used, within seconds; but not where Python was told to write no bytecode.
+    options = ["--compile-bytecode"] if sys.dont_write_bytecode else []
+    python = folder / "bin" / "python"
+    _run([uv, "pip", "install", "--python", python, *options, *packages], "Downloaded", "Downloading")
 
 
 def _with_pip(base, folder, packages, lock):
@@ -175,13 +178,13 @@ def _version(uv):
 def _pip(base, folder):
     """pip for `.venv`: that of the Python it is made from, or else the one Python carries along, which takes unpacking."""
     python = folder / "bin" / "python"
-    command = [base, "-m", "pip", "--disable-pip-version-check", "--python", python]
+    command = ["-m", "pip", "--disable-pip-version-check"]
     try:
-        _run([*command, "--version"])
+        _run([base, "-c", "import pip"])
     except StepFailed:
         _run([python, "-m", "ensurepip"])
-        command = [python, "-m", "pip", "--disable-pip-version-check"]
-    return command
+        return [python, *command]
+    return [base, *command, "--python", python]
 
 
 def _run(step, counted=None, total=None):
