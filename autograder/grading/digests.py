@@ -20,7 +20,7 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
-from ..environment import pinned
+from ..environment import pins
 from ..files import replace
 from ..sandbox.bubblewrap import CODE
 
@@ -90,7 +90,10 @@ def files_of(package):
             for path in folder.rglob("*.py")
         },
         {path.name: _sha(path.read_bytes()) for path in (AUTOGRADER / "pages" / "templates").glob("[!.]*")},
-        {"python": list(sys.version_info[:2]), **pinned(AUTOGRADER.parent / "environment.txt")},
+        {
+            "python": list(sys.version_info[:2]),
+            **dict(pins((AUTOGRADER.parent / "environment.txt").read_text(encoding="utf-8"))),
+        },
     )
 
 

@@ -12,7 +12,14 @@ from ..course import ASSIGNMENT, CourseError
 
 GRADESCOPE = Path(__file__).parent / "gradescope_files"  # what has to be at the root of its zip
 # What grades one student's files, beside the solutions in source/ and what was released.
-GRADER = ("autograder", f"source/{ASSIGNMENT}", f"notebooks/{ASSIGNMENT}", "environment.txt", "nbgrader_config.py")
+GRADER = (
+    "autograder",
+    f"source/{ASSIGNMENT}",
+    f"notebooks/{ASSIGNMENT}",
+    "environment.txt",
+    "environment.lock",
+    "nbgrader_config.py",
+)
 ABOUT_ENVIRONMENT = f"""\
 # What the notebooks need. To install it: pip install -r environment.txt
 # To open them then: jupyter lab (in this folder, {ASSIGNMENT})

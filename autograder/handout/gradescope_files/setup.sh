@@ -12,4 +12,4 @@ if ! python3 -c 'import sys; from autograder.environment import OLDEST; sys.exit
 fi
 # Outside /autograder, which run_autograder closes: a notebook's process reads its packages from here.
 python3 -m venv /opt/transforms
-/opt/transforms/bin/pip install --no-cache-dir --disable-pip-version-check -r environment.txt
+/opt/transforms/bin/pip install --no-cache-dir --disable-pip-version-check --require-hashes -r environment.lock
