@@ -249,6 +249,15 @@ def test_what_python_finds_elsewhere_is_installed_all_the_same(root, tools, tmp_
     assert has_the_package(python)
 
 
+@pytest.mark.parametrize("written", [True, False])
+def test_modules_are_compiled_where_the_first_import_will_not_do_it(root, tools, monkeypatch, written):
+    needs_a_package(root)
+    (tools / "uv").symlink_to(UV)
+    monkeypatch.setattr(sys, "dont_write_bytecode", not written)
+    environment.make(root)
+    assert bool(list((root / ".venv").rglob("lacking_here.*.pyc"))) is not written
+
+
 # --- as a command meets it ------------------------------------------------------------------------------------------
 
 

@@ -131,7 +131,9 @@ def test_what_gradescope_asks_of_its_zip(course, tmp_path):
         checked = subprocess.run(["bash", "-n", tmp_path / name], capture_output=True, text=True)
         assert checked.returncode == 0, checked.stderr
     setup = contents["setup.sh"].decode()
-    assert "-r environment.txt" in setup and "environment.txt" in contents
+    assert (
+        "--require-hashes -r environment.lock" in setup and {"environment.txt", "environment.lock"} <= contents.keys()
+    )
     assert "from autograder.environment import OLDEST" in setup and isinstance(environment.OLDEST, tuple)
     assert "python3 -m venv /opt/transforms" in setup and b"/opt/transforms/bin/python" in contents["run_autograder"]
     assert (
