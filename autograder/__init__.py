@@ -4,6 +4,7 @@ The students' package `transform_lab` lies beside the notebooks (nbgrader copies
 the path here, once for every way into the grader.
 """
 
+import os
 import sys
 from pathlib import Path
 
@@ -16,3 +17,6 @@ if _SOURCE not in sys.path:
 # nbformat imports jsonschema, and jsonschema this one, which takes a second to build a grammar of international web
 # addresses. No notebook's schema asks for them, and jsonschema does without.
 sys.modules.setdefault("rfc3987_syntax", None)  # type: ignore[arg-type]  # None: it cannot be imported
+
+# NumPy's and SciPy's linear algebra starts a thread for each core, and for 4x4 matrices they only wait for each other.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")

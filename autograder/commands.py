@@ -202,11 +202,12 @@ def package(options):
 
 
 def prove(options):
-    os.environ.setdefault(
-        "OPENBLAS_NUM_THREADS", "1"
-    )  # before NumPy starts more: for 4x4 matrices they only get in the way
+    from .proving.errors import told
 
-    from .exercises import EXERCISES
+    try:
+        from .exercises import EXERCISES
+    except Exception as error:
+        raise CourseError(f"The specifications in autograder/exercises/ cannot be read: {told(error)}") from None
     from .proving import show
     from .proving.adequacy import seeds
     from .proving.proof import prove, steps

@@ -1,7 +1,6 @@
 """The proof of an exercise: everything is measured in as many processes as there are cores, then a case is searched for."""
 
 import os
-import traceback
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass, field
 from functools import cache
@@ -9,6 +8,7 @@ from functools import cache
 from ..course import Course, CourseError
 from ..exercises import EXERCISES
 from .adequacy import NAMED_EVERY, Found, measure, misnamed, refused, slips_through
+from .errors import told
 from .search import Search
 from .solutions import made_no_longer, to_be_tried
 
@@ -100,18 +100,9 @@ def _measured(root, name, seeds, named):
     try:
         return measure(EXERCISES[name], _tried(root, name), seeds, named)
     except Exception as error:
-        raise CourseError(f"{name} cannot be proved: {_told(error)}") from None
+        raise CourseError(f"{name} cannot be proved: {told(error)}") from None
 
 
 @cache
 def _tried(root, name):
     return to_be_tried(Course(root), EXERCISES[name])
-
-
-def _told(error):
-    """An error in the specification, and where."""
-    if isinstance(error, CourseError):
-        return str(error)
-    steps = [step for step in traceback.extract_tb(error.__traceback__) if "exercises" in step.filename]
-    where = f" ({os.path.basename(steps[-1].filename)}, line {steps[-1].lineno}: {steps[-1].line})" if steps else ""
-    return f"{type(error).__name__}: {error}{where}"

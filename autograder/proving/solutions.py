@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import nbformat
 
 from ..course import CourseError
+from .errors import told
 from .mutants import Mutant, mutants
 
 NOTEBOOK = "notebook: "  # begins what was changed in the notebook's solution
@@ -81,13 +82,11 @@ def _function(name, source, file, namespace):
     linecache.cache[file] = len(source), None, source.splitlines(keepends=True), file  # for inspect and Mutant.source
     try:
         exec(compile(source, file, "exec"), namespace)
-        return namespace[name]
-    except SyntaxError as error:
-        raise CourseError(f"{file}, line {error.lineno}: {error.msg}.") from None
-    except KeyError:
-        raise CourseError(f"{file} does not define {name}.") from None
     except Exception as error:
-        raise CourseError(f"{file} stops with {type(error).__name__}: {error}") from None
+        raise CourseError(f"{file} cannot be run: {told(error)}") from None
+    if name not in namespace:
+        raise CourseError(f"{file} does not define {name}.")
+    return namespace[name]
 
 
 def _imports(cells):
@@ -118,7 +117,7 @@ def own_solutions(course, name):
         try:
             importlib.import_module(f"solutions.{module}")
         except Exception as error:
-            raise CourseError(f"tests/solutions/{module}.py stops with {type(error).__name__}: {error}") from None
+            raise CourseError(f"tests/solutions/{module}.py cannot be read: {told(error)}") from None
     registered, declared = sys.modules["solutions.right"], sys.modules["solutions.wrong"]
     right = {label: function for (of, function), label in zip(registered.RIGHT, registered.NAMES) if of == name}
     return right, {function.__name__: function for of, _, function in declared.WRONG if of == name}

@@ -28,12 +28,7 @@ def test_adequacy(name, thorough):
     exercise, course = EXERCISES[name], Course(ROOT)
     drawn_from = seeds(201 if thorough else 3)
     tried = to_be_tried(course, exercise)
-    assert notebook_solution(course, name) and {each.kind for each in tried} >= {
-        "misconception",
-        "mutant",
-        "right",
-        "wrong",
-    }
+    assert notebook_solution(course, name) and {"misconception", "mutant", "right"} <= {each.kind for each in tried}
     assert not made_no_longer(exercise, tried), "declared as equivalent, and made no longer"
     found = measure(exercise, tried, drawn_from, named=drawn_from[::NAMED_EVERY])
     said = []

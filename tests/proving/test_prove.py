@@ -13,6 +13,7 @@ from autograder.commands import run
 from autograder.course import Course
 from autograder.exercises import EXERCISES
 from autograder.proving import search
+from autograder.proving.adequacy import quiet
 from autograder.proving.solutions import to_be_tried
 
 SPECIFICATION = """
@@ -129,8 +130,9 @@ def details_of(said, beginning):
 
 def test_the_table_counts(said):
     row = next(line for line in said.splitlines() if line.startswith("raised "))
-    assert re.split(r"  +", row.strip())[:3] == ["raised", "3 of 4", "1 of 4"]
-    assert re.split(r"  +", row.strip())[4:] == ["1 of 2", "2 of 3", "0 of 1", said.split()[-2]]
+    numbers = re.findall(r"\d+ of \d+|\S+", row)
+    assert numbers[:3] == ["raised", "3 of 4", "1 of 4"]
+    assert numbers[4:] == ["1 of 2", "2 of 3", "0 of 1", said.split()[-2]]
     assert re.search(r"only-up \(2\) +nothing", said)
     assert re.search(r"wrong-sign \(1\) +all families +by its own name", said)
 
@@ -204,6 +206,7 @@ def test_a_specification_that_stops_is_said_without_a_traceback(scratch):
     path = scratch / "autograder" / "exercises" / "raising.py"
     for old, new, told in (
         ("rng.uniform", "rng.uniformly", "'uniformly' (raising.py, line "),
+        ("def cases(rng):", "def cases(rng:", "cannot be read: '(' was never closed (raising.py, line "),
         ("return np.array([", "return str([", "the reference's answer to a case of 'a point on the diagonal' is a str"),
     ):
         try:
@@ -217,13 +220,18 @@ def test_a_specification_that_stops_is_said_without_a_traceback(scratch):
 
 @pytest.mark.parametrize("name", EXERCISES)
 def test_the_search_finds_what_is_wrong_and_nothing_that_is_right(name, monkeypatch):
-    monkeypatch.setattr(search, "MOST", 300)
     exercise = EXERCISES[name]
     tried = to_be_tried(Course(ROOT), exercise)
-    cases = search.Search(exercise, [each.function for each in tried if each.kind == "right"])
+    known_right = [each.function for each in tried if each.kind == "right"]
+    cases = search.Search(exercise, known_right)
     for each in tried:
         if each.kind == "misconception":
             case = cases.case_for(each.function)
-            assert search.answered_by_reference(exercise, case).refusing(each.function) == 0
-        elif each.kind == "equivalent":
+            assert case, each.label
+            with quiet():
+                assert search.answered_by_reference(exercise, case).refusing(each.function) == 0
+    monkeypatch.setattr(search, "MOST", 200)
+    cases = search.Search(exercise, known_right)
+    for each in tried:
+        if each.kind == "equivalent":
             assert cases.case_for(each.function) is None, each.label
