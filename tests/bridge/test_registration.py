@@ -11,9 +11,9 @@ from support import marks, nbgrader, run, scores, verdicts
 from autograder.bridge import nbgrader_api
 from autograder.bridge.gradebook import Writer
 from autograder.course import Course, CourseError
+from autograder.exercises import EXERCISES
 from autograder.grading.grade import Graded
 from autograder.grading.marks import Marks
-from autograder.exercises import EXERCISES
 from autograder.handout import release as handout
 from autograder.handout import source
 from autograder.pages import report
