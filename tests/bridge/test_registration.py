@@ -11,6 +11,7 @@ from support import marks, nbgrader, run, scores, verdicts
 from autograder.bridge import nbgrader_api
 from autograder.bridge.gradebook import Writer
 from autograder.course import Course, CourseError
+from autograder.exercises import EXERCISES
 from autograder.grading.grade import Graded
 from autograder.grading.marks import Marks
 from autograder.handout import release as handout
@@ -188,7 +189,9 @@ def test_nbgraders_own_reason_is_told(taken, change, reason):
 @pytest.fixture
 def same_public_cases(monkeypatch):
     """Releases of one test compute the public cases and the page of all exercises, which stay the same, only once."""
-    monkeypatch.setattr(handout, "key", cache(handout.key))
+    key = handout.key
+    once = cache(lambda name, seed: key(EXERCISES[name], seed))
+    monkeypatch.setattr(handout, "key", lambda exercise, seed: once(exercise.name, seed))
     monkeypatch.setattr(handout.exercises_page, "page", cache(handout.exercises_page.page))
 
 

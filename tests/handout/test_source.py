@@ -58,9 +58,10 @@ def test_an_exercise_may_be_dropped(draft, position):
         assert found[name].points == kept and found[name].questions == released.questions
 
 
-def test_a_question_may_be_added(draft):
+@pytest.mark.parametrize("level", ["##", "###"])
+def test_a_question_may_be_added(draft, level):
     with Edited(draft.source, "3_chaining") as edited:
-        edited.add_question("mine", 1)
+        edited.add_question("mine", 1, f"{level} Question: why? (1 point, read by a person)")
         edited.say_points(sum(ASKED["3_chaining"].points.values()) + 1)
     notebook = source.notebooks(draft)["3_chaining"]
     assert notebook.questions == {"mine": 1.0} and notebook.section("mine").startswith("Question: why?")
