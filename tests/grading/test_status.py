@@ -17,7 +17,7 @@ from autograder.grading.judge import Row
 from autograder.pages import export, feedback
 from autograder.pages.report_data import Work, look, results
 
-ADDED = "withdrawn"
+ADDED = "added_by_a_test"
 NOTEBOOK, EXERCISE = next(iter(ASKED)), NAMES[0]
 COLUMNS = ("right", "named", "unnamed", "failed", "undone")  # of "Each exercise", after the average
 CONTRACT = (
@@ -111,9 +111,7 @@ def test_records_without_words_say_what_the_status_means(added):
     """A look is asked for, too, where an exercise of this status counts as not done."""
     STATUSES[ADDED] = Status("The student took it back.", counts="undone")
     found = look({"ann": Work([Row(NOTEBOOK, EXERCISE, 0.0, 2.0, ADDED)])})
-    assert found.reasons == {
-        "Could not be judged": {"ann": {"status withdrawn: The student took it back.": [EXERCISE]}}
-    }
+    assert found.reasons == {"Could not be judged": {"ann": {f"status {ADDED}: The student took it back.": [EXERCISE]}}}
 
 
 def test_each_says_what_it_means_and_how_it_counts():
