@@ -3,7 +3,6 @@
 import numpy as np
 
 from .jupyter import being_graded, shell
-from .viewing.scene import add_matrix
 from .viewing.viewer import Viewer
 
 __all__ = ["show_mistake"]
@@ -27,7 +26,7 @@ def show_mistake(right, wrong, name="frame_b", viewer=None, length=None, gripper
         elif hasattr(value, "x") or np.ndim(value) == 1:
             viewer.add_point(label, value, ghost=ghost)
         else:
-            add_matrix(viewer, label, np.asarray(value, float), ghost, length)
+            viewer.add_matrix(label, np.asarray(value, float), length=length, ghost=ghost)
         if gripper:
             viewer.add_gripper(label, ghost=ghost)
     viewer.text = "pale: as it should be; strong: by mistake"

@@ -5,6 +5,8 @@ import re
 import numpy as np
 
 from .. import tft
+from ..validation import FARTHEST
+from ..viewing.drawing import round_number
 from ..viewing.viewer import Viewer
 from . import codec
 from .answers import parts_of
@@ -17,8 +19,8 @@ def scene(verdict):
     The frames are found by the names of the answer and of the function's parameters: base_T_camera, p_in_camera,
     pose_in_b, object_pose (described in the frame that the answer is described in).
     """
-    case = verdict.failing
-    if case is None or not verdict.wanted or verdict.answer is None or KINDS[verdict.returns].draw is None:
+    case, kind = verdict.failing, KINDS.get(verdict.returns)  # none when no call came to its end
+    if case is None or kind is None or kind.draw is None or not verdict.wanted or verdict.answer is None:
         return None
     parent, name = frames_of(verdict.wanted)
     given = [codec.decode(plain) for plain in case["args"]]
@@ -29,7 +31,9 @@ def scene(verdict):
     try:
         _add_given(viewer, verdict.parameters, given, name)
         drawn = [(label, parts_of(verdict.returns, answer), ghost) for label, answer, ghost in answers]
-        KINDS[verdict.returns].draw(viewer, drawn)
+        length = _length(kind, [parts for _, parts, _ in drawn])
+        for label, parts, ghost in drawn:
+            kind.draw(viewer, label, parts, ghost, length)
     except ValueError:  # nothing that could be drawn; the panel says what is wrong with it
         return None
     if given:
@@ -44,6 +48,13 @@ def _close_together(viewer):
         return None
     spread, distance = np.ptp(list(places.values()), axis=0).max(), np.linalg.norm(list(places.values()), axis=1).min()
     return list(places) if 0 < 3 * spread < distance else None
+
+
+def _length(kind, answers):
+    """How long to draw the axes of a matrix that is one of these answers (given by their parts), in metres."""
+    places = [name for name, part in kind.parts.items() if part.unit == "m"]
+    size = max((np.abs(parts[name]).max() for parts in answers for name in places), default=0)
+    return round_number(0.5 * size) if 0 < size < FARTHEST else 1.0
 
 
 def frames_of(answer):

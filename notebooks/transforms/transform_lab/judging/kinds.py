@@ -9,9 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..messages import Point, Pose, Quaternion
-from ..validation import FARTHEST
-from ..viewing.drawing import round_number
-from ..viewing.scene import add_matrix
 from . import lines, reading
 
 TOLERANCE = 1e-6  # absolute up to 1 (metre, or component of a unit vector), relative beyond
@@ -98,25 +95,20 @@ def as_truths(got, expected, off):
     return [f"  {who:10}{bool(value['answer'])}" for who, value in (("expected", expected), ("yours", got))]
 
 
-# --- both of them in a scene: (viewer, [(label, parts, whether it is drawn pale), …]) -------------------------------
+# --- one of them in a scene: (viewer, label, parts, whether it is drawn pale, the length of a matrix's axes) ---------
 
 
-def draw_matrices(viewer, answers):
-    sizes = [np.abs(parts["translation"]).max() for _, parts, _ in answers if "translation" in parts]
-    length = round_number(0.5 * max(sizes)) if sizes and 0 < max(sizes) < FARTHEST else 1.0
-    for label, parts, ghost in answers:
-        add_matrix(viewer, label, matrix_of(parts), ghost, length)
+def draw_matrix(viewer, label, parts, ghost, length):
+    viewer.add_matrix(label, matrix_of(parts), length=length, ghost=ghost)
 
 
-def draw_poses(viewer, answers):
-    for label, parts, ghost in answers:
-        p, q = Point(*parts["position"].tolist()), Quaternion(*parts["orientation"].tolist())
-        viewer.add_frame(label, Pose(p, q), ghost=ghost)
+def draw_pose(viewer, label, parts, ghost, length):
+    p, q = Point(*parts["position"].tolist()), Quaternion(*parts["orientation"].tolist())
+    viewer.add_frame(label, Pose(p, q), ghost=ghost)
 
 
-def draw_points(viewer, answers):
-    for label, parts, ghost in answers:
-        viewer.add_point(label, parts["coordinates"], ghost=ghost)
+def draw_point(viewer, label, parts, ghost, length):
+    viewer.add_point(label, parts["coordinates"], ghost=ghost)
 
 
 # --- the table ------------------------------------------------------------------------------------------------------
@@ -129,7 +121,7 @@ class Kind:
     wanted: what the function has to return, in words: "a 4x4 array"
     parts: {name: Part}, which are right or wrong by themselves, and which an exercise gives credit for
     read: from (answer, wanted) to {name of the part: array}; raises reading.Unfit for what is no answer of this kind
-    draw: adds answers to a viewer, see above; None for what cannot be drawn
+    draw: adds an answer to a viewer, see above; None for what cannot be drawn
     show: compares two answers in lines of text, see above
     """
 
@@ -157,27 +149,27 @@ KINDS = {
         wanted="a 3x3 array",
         parts={"rotation": ROTATION},
         read=lambda answer, wanted: {"rotation": reading.array(answer, wanted, (3, 3))},
-        draw=draw_matrices,
+        draw=draw_matrix,
         show=as_matrices,
     ),
     "transform": Kind(
         wanted="a 4x4 array",
         parts={"rotation": ROTATION, "translation": PLACE, "bottom row": ANYTHING},
         read=_transform,
-        draw=draw_matrices,
+        draw=draw_matrix,
         show=as_matrices,
     ),
     "pose": Kind(
         wanted="a Pose",
         parts={"position": PLACE, "orientation": ORIENTATION},
         read=lambda answer, wanted: reading.fields(answer, wanted, position="xyz", orientation="xyzw"),
-        draw=draw_poses,
+        draw=draw_pose,
     ),
     "coordinates": Kind(
         wanted="an array of 3 coordinates",
         parts={"coordinates": PLACE},
         read=lambda answer, wanted: {"coordinates": reading.array(answer, wanted, (3,), (3, 1), (1, 3)).reshape(3)},
-        draw=draw_points,
+        draw=draw_point,
     ),
     "truth": Kind(
         wanted="True or False",

@@ -133,6 +133,22 @@ class Scene:
         self.frames[name] = Frame(parent, matrix, length, bool(ghost))
         self._changed()
 
+    def add_matrix(self, name, matrix, length=None, ghost=False):
+        """Add the frame of a 3x3 or 4x4 matrix; of one that is no rotation, its three columns as arrows.
+
+        Raises ValueError for another matrix, and for a 4x4 one whose bottom row is not 0, 0, 0, 1.
+        """
+        if matrix.shape == (3, 3):
+            matrix = np.block([[matrix, np.zeros((3, 1))], [np.zeros((1, 3)), 1]])
+        try:
+            self.add_frame(name, matrix, length=length, ghost=ghost)
+        except ValueError:
+            if matrix.shape != (4, 4) or not np.array_equal(matrix[3], [0, 0, 0, 1]):
+                raise
+            for letter, column, color in zip("xyz", matrix[:3, :3].T, (X_RED, Y_GREEN, Z_BLUE)):
+                tip, tail = matrix[:3, 3] + (length or 1) * column, matrix[:3, 3]
+                self.add_arrow(f"{letter} of {name}", tip, tail=tail, color=color)
+
     def add_point(self, name, position, frame=None, color=ORANGE, ghost=False):
         """Add the point `name`, or replace it: `position` is a Point or 3 numbers in `frame`.
 
@@ -279,21 +295,6 @@ class Scene:
             matrix = rigid_transform(pose, f"{what}: the transform")
         within_reach(matrix[:3, 3], f"{what}: the translation")
         return frame, matrix
-
-
-def add_matrix(scene, label, matrix, ghost=False, length=None):
-    """Add the frame of a 3x3 or 4x4 matrix to `scene`; of one that is no rotation, its three columns as arrows."""
-    if matrix.shape == (3, 3):
-        matrix = np.block([[matrix, np.zeros((3, 1))], [np.zeros((1, 3)), 1]])
-    try:
-        scene.add_frame(label, matrix, length=length, ghost=ghost)
-    except ValueError:
-        if matrix.shape != (4, 4) or not np.array_equal(matrix[3], [0, 0, 0, 1]):
-            raise
-        for letter, column, color in zip("xyz", matrix[:3, :3].T, (X_RED, Y_GREEN, Z_BLUE)):
-            scene.add_arrow(
-                f"{letter} of {label}", matrix[:3, 3] + (length or 1) * column, tail=matrix[:3, 3], color=color
-            )
 
 
 def _name(name, what):
