@@ -1,6 +1,11 @@
 """A status is known to the one list and seen wherever verdicts are: none is dropped, and none that is not there is taken."""
 
+import copy
+import io
 import json
+import re
+import shutil
+from collections import Counter
 from concurrent.futures import Future
 
 import nbformat
@@ -12,12 +17,14 @@ from transform_lab.judging.verdict import Verdict
 
 from autograder import commands
 from autograder.bridge.gradebook import Writer
+from autograder.course import Course
 from autograder.grading import classroom, grade, records
 from autograder.grading.judge import Row
+from autograder.intake.restore import Intake
 from autograder.pages import export, feedback
 from autograder.pages.report_data import Work, look, results
 
-ADDED = "withdrawn"
+ADDED = "added_by_a_test"
 NOTEBOOK, EXERCISE = next(iter(ASKED)), NAMES[0]
 COLUMNS = ("right", "named", "unnamed", "failed", "undone")  # of "Each exercise", after the average
 CONTRACT = (
@@ -30,10 +37,15 @@ CONTRACT = (
 )  # as scripts that read verdicts.csv know them
 
 
-@pytest.fixture
-def added(monkeypatch):
+every_status = pytest.mark.parametrize("status", [*STATUSES, ADDED])
+
+
+@pytest.fixture(scope="module")
+def added():
     """A status that nothing but its entry in the list knows."""
-    monkeypatch.setitem(STATUSES, ADDED, Status("The student took it back."))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(STATUSES, ADDED, Status("The student took it back."))
+        yield
 
 
 class Here:
@@ -53,53 +65,78 @@ class Here:
         """There is nothing to close."""
 
 
-@pytest.fixture
-def graded(course, solved, hand_in, monkeypatch, capsys):
-    """graded(status): (a course in which all of a student's first notebook got it, what `grade` printed)."""
+@pytest.fixture(scope="module")
+def graded(released, tmp_path_factory, added):
+    """(course, what `grade` printed): a student for each status, named after it; all of their one notebook got it."""
 
-    def make(status):
-        def restore(content, released):
-            intake = real(content, released)
-            intake.statuses = dict.fromkeys(released.points, status)
-            return intake
+    def with_status(content, released):
+        return Intake(copy.deepcopy(released.notebook), dict.fromkeys(released.points, content.decode()))
 
-        real = grade.restore
-        monkeypatch.setattr(grade, "restore", restore)
-        monkeypatch.setattr(grade, "key", lambda exercise, seed: {})  # no case is ever called
-        monkeypatch.setattr(classroom, "Processes", Here)
-        monkeypatch.setattr(commands, "console", Console(width=400, highlight=False, soft_wrap=True))
-        hand_in(course, "ann", {NOTEBOOK: solved[NOTEBOOK]})
-        assert commands._grade(course, ["ann"], protected=False, jobs=1, with_feedback=False) == []
-        return course, capsys.readouterr().out
+    course = Course(shutil.copytree(released.root, tmp_path_factory.mktemp("statuses") / "course"))
+    for status in STATUSES:
+        course.submitted(status).mkdir(parents=True)
+        (course.submitted(status) / f"{NOTEBOOK}.ipynb").write_text(status)
+    printed = io.StringIO()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(grade, "restore", with_status)
+        patch.setattr(grade, "key", lambda exercise, seed: {})  # no case is ever called
+        patch.setattr(classroom, "Processes", Here)
+        patch.setattr(commands, "console", Console(file=printed, width=1000, highlight=False, soft_wrap=True))
+        failed = commands._grade(course, list(STATUSES), protected=False, jobs=1, with_feedback=False)
+    assert failed == []
+    return course, printed.getvalue()
 
-    return make
 
-
-@pytest.mark.parametrize("status", [*STATUSES, ADDED])
-def test_every_status_is_seen_in_all_that_grading_makes(status, added, graded):
-    course, said = graded(status)
-    assert {row["status"] for row in verdicts(course) if row["notebook"] == NOTEBOOK} == {status}
+@every_status
+def test_commands_and_verdicts_have_it(status, graded):
+    course, said = graded
+    assert {row["status"] for row in verdicts(course) if (row["student"], row["notebook"]) == (status, NOTEBOOK)} == {
+        status
+    }
+    (line,) = (line for line in said.splitlines() if re.match(rf"{status} +\d", line))
     if status != "graded":
-        count = len(NAMES if status == "missing" else ASKED[NOTEBOOK].points)  # the other notebooks are missing
-        assert f", {count} {status}" in said and f"{status} ({', '.join(ASKED[NOTEBOOK].points)}" in said
+        assert f"{status} ({', '.join(ASKED[NOTEBOOK].points)}" in line
+        others = len(NAMES) - len(ASKED[NOTEBOOK].points)  # which nobody handed in
+        count = len(ASKED[NOTEBOOK].points) + (status == "missing") * len(STATUSES) * others
+        assert f", {count} {status}" in said
+
+
+@every_status
+def test_the_report_lists_who_has_it_under_its_title(status, graded):
+    course, _ = graded
     page = (course.reports / "index.html").read_text(encoding="utf-8")
-    counts = page.partition(f"<code>{EXERCISE}</code>")[2].partition("</tr>")[0].split('<td class="number')[2:]
-    column = STATUSES[status].counts
-    assert [cell.partition(">")[2].partition("<")[0] for cell in counts] == ["01"[name == column] for name in COLUMNS]
-    if title := STATUSES[status].look:
-        section = page.partition(f"<h3>{title}: 1 student</h3>")[2].partition("<h3>")[0]
-        assert STATUSES[status].means in section and f"<code>{EXERCISE}</code>" in section
+    title = STATUSES[status].look
+    sections = {
+        found[1]: found[2] for found in re.finditer(r"<h3>([^<]*): \d+ students?</h3>(.*?)(?=<h[23])", page, re.DOTALL)
+    }
+    named = [title for title, section in sections.items() if f'<th scope="row">{status}</th>' in section]
+    assert named == ([title] if title else [])
+    if title:
+        (row,) = re.findall(rf'<th scope="row">{status}</th>(.*?)</tr>', sections[title], re.DOTALL)
+        assert STATUSES[status].means in row and all(f"<code>{name}</code>" in row for name in ASKED[NOTEBOOK].points)
+
+
+def test_the_report_counts_each_once(graded):
+    course, _ = graded
+    page = (course.reports / "index.html").read_text(encoding="utf-8")
+    row = page.partition(f"<code>{EXERCISE}</code></th>")[2].partition("</tr>")[0]
+    counts = re.findall(r'<td class="number[^>]*>(\d+)</td>', row)
+    columns = Counter(status.counts for status in STATUSES.values())
+    assert counts == [str(columns[name]) for name in COLUMNS]
+
+
+@every_status
+def test_the_student_reads_what_it_means(status, graded):
+    course, _ = graded
     with Writer(course) as writer:
-        assert STATUSES[status].means in feedback.summary(course, "ann", writer.grades()["ann"])
-    (path,) = course.autograded("ann").glob("*.ipynb")
-    opinions = [
-        cell.outputs[0].data["text/html"] for cell in nbformat.read(path, as_version=4).cells if cell.get("outputs")
-    ]
-    assert len(opinions) == len(ASKED[NOTEBOOK].points)
-    assert all(STATUSES[status].means in opinion for opinion in opinions)
+        assert STATUSES[status].means in feedback.summary(course, status, writer.grades()[status])
+    (path,) = course.autograded(status).glob("*.ipynb")
+    tested = [cell for cell in nbformat.read(path, as_version=4).cells if cell.get("outputs")]
+    assert len(tested) == len(ASKED[NOTEBOOK].points)
+    assert all(STATUSES[status].means in cell.outputs[0].data["text/html"] for cell in tested)
 
 
-@pytest.mark.parametrize("status", [*STATUSES, ADDED])
+@every_status
 def test_every_status_is_counted_once_and_said_in_exports(status, added):
     row = Row(NOTEBOOK, EXERCISE, 0.0, 2.0, status)
     ((result,),) = results({"ann": Work([row])}).values()
@@ -107,13 +144,11 @@ def test_every_status_is_counted_once_and_said_in_exports(status, added):
     assert export._said(row) == f"{EXERCISE} 0 of 2{'' if status == 'graded' else f' ({status})'}"
 
 
-def test_records_without_words_say_what_the_status_means(added):
+def test_records_without_words_say_what_the_status_means(added, monkeypatch):
     """A look is asked for, too, where an exercise of this status counts as not done."""
-    STATUSES[ADDED] = Status("The student took it back.", counts="undone")
+    monkeypatch.setitem(STATUSES, ADDED, Status("The student took it back.", counts="undone"))
     found = look({"ann": Work([Row(NOTEBOOK, EXERCISE, 0.0, 2.0, ADDED)])})
-    assert found.reasons == {
-        "Could not be judged": {"ann": {"status withdrawn: The student took it back.": [EXERCISE]}}
-    }
+    assert found.reasons == {"Could not be judged": {"ann": {f"status {ADDED}: The student took it back.": [EXERCISE]}}}
 
 
 def test_each_says_what_it_means_and_how_it_counts():
@@ -124,18 +159,18 @@ def test_each_says_what_it_means_and_how_it_counts():
 
 
 @pytest.mark.parametrize("make", [lambda status: Row("1", "x", 0.0, 2.0, status), lambda status: Verdict("x", status)])
-@pytest.mark.parametrize("status", [ADDED, "", "Graded", None])
+@pytest.mark.parametrize("status", ["lost", "", "Graded", None])
 def test_a_status_that_is_not_in_the_list_is_refused_where_it_is_made(make, status):
     with pytest.raises(ValueError, match="is no status; there are graded, timeout, killed, error, missing, unreadable"):
         make(status)
 
 
-@pytest.mark.parametrize("status", [ADDED, ["graded"], None])
-def test_a_record_with_an_unknown_status_counts_as_not_graded(status, graded):
-    course, _ = graded("graded")
-    (path,) = course.autograded("ann").glob("*.ipynb")
-    assert list(records.recorded(course, "ann")) == [NOTEBOOK]
+@pytest.mark.parametrize("unknown", ["lost", ["graded"], None])
+def test_a_record_with_an_unknown_status_counts_as_not_graded(unknown, graded, tmp_path):
+    course = Course(shutil.copytree(graded[0].root, tmp_path / "course"))
+    (path,) = course.autograded("graded").glob("*.ipynb")
+    assert list(records.recorded(course, "graded")) == [NOTEBOOK]
     notebook = json.loads(path.read_text(encoding="utf-8"))
-    notebook["metadata"]["transform_lab"]["rows"][1]["status"] = status
+    notebook["metadata"]["transform_lab"]["rows"][1]["status"] = unknown
     path.write_text(json.dumps(notebook), encoding="utf-8")
-    assert records.recorded(course, "ann") == {}
+    assert records.recorded(course, "graded") == {}

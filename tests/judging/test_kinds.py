@@ -140,8 +140,8 @@ def test_a_wrong_answer_is_shown_as_text_and_as_html(returns):
 
 
 def test_a_kind_that_is_not_in_the_table_is_refused_with_the_list():
-    with pytest.raises(ValueError, match="turn: 'angle' is no kind of answer; there are rotation, transform, pose"):
-        Exercise("turn", "angle", "", lambda R: 0.0, lambda rng: [])
+    with pytest.raises(ValueError, match="turn: 'colour' is no kind of answer; there are rotation, transform, pose"):
+        Exercise("turn", "colour", "", lambda R: 0.0, lambda rng: [])
 
 
 def test_an_answer_whose_name_tells_no_frame_is_refused():
