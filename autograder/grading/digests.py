@@ -1,12 +1,14 @@
 """What decides a grade, and what makes a page, each in one number.
 
 - Of grades: the released notebooks, the limits, and the modules on the way from a file to its verdict: all that those
-  of FILE_TO_VERDICT import, one from the other. Of the students' package the panel and its lines do not count, nor what draws.
+  of FILE_TO_VERDICT import, one from the other, but for SHOWS, which words and draws; and what else of the students'
+  package a function may compute with, which is all that imports none of SHOWS.
 - Of pages: the templates, and all that the modules of PAGES import, one from the other.
 
 Of a module its syntax counts: no comment, layout or docstring. What the exercises' misconceptions say and their hints
-count for pages alone, which have them as they are now (see records.py). Of a package that is imported the version counts
-that environment.txt pins: what a student's function answers is NumPy's doing, too.
+count for pages alone, which have them as they are now (see records.py), and so do mutants declared as equivalent. Of a
+package that is imported the version counts that environment.txt pins: what a student's function answers is NumPy's
+doing, too.
 """
 
 import ast
@@ -33,10 +35,11 @@ FILE_TO_VERDICT = (
     "autograder.grading.grade",
     *SPECIFIED,
     *(f"autograder.sandbox.{Path(file).stem}" for file in CODE),  # run as files
-    PACKAGE + "__init__",
 )
 PAGES = ("autograder.pages.feedback", "autograder.pages.exporter", "autograder.pages.markdown", *SPECIFIED)
-PANEL, VIEWING = (PACKAGE + "judging.panel", PACKAGE + "judging.lines"), PACKAGE + "viewing."
+GATHERS = PACKAGE + "__init__"  # imported along with each module of the package, and imports them all
+EQUIVALENT = "equivalent"  # the exercises' module, and field, of what only `prove` asks for
+SHOWS = tuple(PACKAGE + part for part in ("viewing.", "judging.panel", "judging.lines", "judging.comparison"))
 REMEMBERED = Path(__file__).parent / "__pycache__" / "digests.json"
 
 
@@ -107,27 +110,25 @@ def work_out(files):
 
 
 def deciding(modules):
-    """The names of the modules on the way from a file to its verdict."""
-
-    def draws(name):  # the package itself, which is imported along with each of its modules, imports them all
-        return any(other.startswith(VIEWING) for other in reached(modules, [name], without=PACKAGE + "__init__"))
-
-    return {
-        name
-        for name in reached(modules, FILE_TO_VERDICT)
-        if name not in PANEL and not (name.startswith(PACKAGE) and draws(name))
-    }
+    """The names of the modules that decide a grade."""
+    package = {name for name in reached(modules, [GATHERS]) if name.startswith(PACKAGE)}
+    shows = {name for name in package if any(map(_shows, reached(modules, [name], without=(GATHERS,))))}
+    return reached(modules, FILE_TO_VERDICT, without=(GATHERS, EXERCISES + EQUIVALENT, *SHOWS)) | (package - shows)
 
 
-def reached(modules, start, without=__name__):
+def _shows(name):
+    return name.startswith(SHOWS)
+
+
+def reached(modules, start, without=()):
     """The modules of `start`, those that they import (one from the other, at their top or later), and the packages of all.
 
-    without: a module that is left out, with what it alone imports; this one decides nothing that it counts
+    without: beginnings of names; these modules are left out, with what they alone import
     """
     found, waiting = set(), list(start)
     while waiting:
         name = waiting.pop()
-        if name in found or name == without:
+        if name in found or name.startswith((__name__, *without)):  # this one decides nothing that it counts
             continue
         found.add(name)
         for mentioned in _read(name, modules[name])[1]:
@@ -144,9 +145,9 @@ def _imported_versions(files, names):
 
 
 def _syntax(modules, names, words=frozenset()):
-    """{name: digest of the module's syntax}; in the exercises, texts that consist of `words` do not count."""
+    """{name: digest of the module's syntax}; with `words`, of exercises only what decides."""
     return {
-        name: _without(modules[name], words) if words and name.startswith(EXERCISES) else _read(name, modules[name])[0]
+        name: _decisive(modules[name], words) if words and name.startswith(EXERCISES) else _read(name, modules[name])[0]
         for name in names
     }
 
@@ -165,10 +166,13 @@ def _read(name, source):
 
 
 @cache
-def _without(source, words):
-    """The digest of a module's syntax without the texts that consist of `words`."""
+def _decisive(source, words):
+    """The digest of an exercises' module without the texts that consist of `words`, and without equivalent mutants."""
     tree = _parsed(source)
+    tree.body = [line for line in tree.body if not (isinstance(line, ast.ImportFrom) and line.module == EQUIVALENT)]
     for node in ast.walk(tree):
+        if isinstance(node, ast.Call):
+            node.keywords = [keyword for keyword in node.keywords if keyword.arg != EQUIVALENT]
         if _is_text(node) and words.issuperset(node.value.split("\n")):
             node.value = ""
     return _digest(ast.dump(tree))
