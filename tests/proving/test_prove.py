@@ -6,6 +6,7 @@ import subprocess
 import sys
 
 import nbformat
+import numpy as np
 import pytest
 from support import MADE_AT_RUN_TIME, ROOT
 
@@ -235,3 +236,19 @@ def test_the_search_finds_what_is_wrong_and_nothing_that_is_right(name, monkeypa
     for each in tried:
         if each.kind == "equivalent":
             assert cases.case_for(each.function) is None, each.label
+
+
+def test_the_search_keeps_to_what_the_exercise_asks():
+    """Two axes stay unit vectors at right angles, whatever is put in their place."""
+    proposed = [case.args for case in search.Candidates(EXERCISES["rotation_from_axes"]).all()]
+    assert len(proposed) == search.MOST and len({str(axes) for axes in proposed}) > 100
+    for x_axis, y_axis in proposed:
+        assert abs(x_axis @ y_axis) < 1e-6
+        assert np.linalg.norm(x_axis) == pytest.approx(1) and np.linalg.norm(y_axis) == pytest.approx(1)
+
+
+def test_the_search_asks_nothing_that_right_solutions_differ_about():
+    exercise = EXERCISES["transform_point"]
+    wrong = exercise.misconceptions[0].wrong
+    assert search.Search(exercise).case_for(wrong)
+    assert search.Search(exercise, [wrong]).case_for(wrong) is None
