@@ -6,7 +6,7 @@ from functools import cache
 
 import pytest
 from editing import Edited
-from support import marks, nbgrader, run, scores, verdicts
+from support import marks, run, scores, verdicts
 
 from autograder.bridge import nbgrader_api
 from autograder.bridge.gradebook import Writer
@@ -221,7 +221,7 @@ def most(course):
     return exercises, exercises + questions
 
 
-def test_a_changed_course_from_release_to_export_and_again(course, same_public_cases):
+def test_a_changed_course_from_release_to_export_and_again(course, same_public_cases, nbgrader):
     """An exercise dropped and a question added before anybody hands in; then other points; then one question more."""
     less(course.source)
     more(course.source)
