@@ -20,6 +20,8 @@ from pathlib import Path
 
 import nbformat
 
+from ..exercises import EXERCISES
+
 STUDENTS = Path(__file__).parent / "students"
 PREFIX = "demo_"
 LITERALS: dict = {"ANSWERS": {}, "EXTRA_CELLS": {}, "MISSING": [], "BROKEN": []}
@@ -36,6 +38,7 @@ def enroll(course):
     Needs a released assignment (CourseError if there is none). Whatever a made-up student had handed in before is
     replaced; the same release gives the same files.
     """
+    asked = {name for released in course.notebooks.values() for name in released.points}
     students = [Student(path) for path in sorted(STUDENTS.glob("*.py"))]
     for student in students:
         folder = course.submitted(student.name)
@@ -44,7 +47,7 @@ def enroll(course):
         shutil.copytree(course.package, folder / course.package.name, ignore=shutil.ignore_patterns("__pycache__"))
         for name, released in course.notebooks.items():
             if name not in student.missing:
-                (folder / f"{name}.ipynb").write_text(student.hand_in(released), encoding="utf-8")
+                (folder / f"{name}.ipynb").write_text(student.hand_in(released, asked), encoding="utf-8")
     return [student.name for student in students]
 
 
@@ -68,10 +71,13 @@ class Student:
         self.answers, self.extra_cells = literals["ANSWERS"], literals["EXTRA_CELLS"]
         self.missing, self.broken = literals["MISSING"], literals["BROKEN"]
 
-    def hand_in(self, released):
-        """The text of the student's file, made from the course.Released notebook."""
+    def hand_in(self, released, asked=frozenset(EXERCISES)):
+        """The text of the student's file, made from the Released notebook.
+
+        asked: the exercises of all notebooks; who uses the function of one relies on the cell that defines it
+        """
         notebook = copy.deepcopy(released.notebook)
-        known = {*_imported(notebook), *released.points}  # the cell of an exercise defines its function
+        known = {*_imported(notebook), *asked}
         for position, cell in reversed(list(enumerate(notebook.cells))):
             code = self.extra_cells.get(cell.metadata.get("nbgrader", {}).get("grade_id"))
             if code:
