@@ -69,7 +69,8 @@ def release(course):
         raise
     changes = _changes(before, course.release_contents())
     described = course.root / exercises_page.PAGE
-    if described.read_text(encoding="utf-8") != (text := exercises_page.page()):
+    written = described.read_text(encoding="utf-8") if described.exists() else ""
+    if written != (text := exercises_page.page()):
         replace(described, text)
         changes.append(f"changed: {exercises_page.PAGE}")
     return changes
