@@ -338,7 +338,7 @@ def test_a_section_is_the_heading_above(released):
 def test_nobody_who_handed_nothing_in_is_reported_exercise_by_exercise(released):
     rows = missing(released.notebooks["5_pre_grasp"])
     look = findings.look({"a": Work(rows, absent=["5_pre_grasp"])})
-    assert look == ({}, {}, {}, {"5_pre_grasp": ["a"]})
+    assert look == ({}, {}, {"5_pre_grasp": ["a"]})
 
 
 def test_verdicts_keep_their_date(course):
