@@ -311,7 +311,7 @@ def test_hostile_work_earns_what_its_honest_part_earns(gradescope, solutions):
     assert results["score"] == points("1_rotation") and len(results["tests"]) == len(NAMES)
 
 
-def test_whatever_goes_wrong_there_is_a_result(released, solutions, tmp_path_factory):
+def test_whatever_goes_wrong_there_is_a_result(released, solutions, sandboxed, tmp_path_factory):
     container = Gradescope(released, tmp_path_factory.mktemp("autograder"), sys.executable, os.environ["PATH"])
     results = container.grade(solutions, python="/nowhere/python")
     assert results["score"] == 0 and "the autograder itself stopped" in results["output"]
