@@ -23,13 +23,9 @@ from pathlib import Path
 import psutil
 
 ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT))
+sys.path[:0] = [str(ROOT), str(ROOT / "source" / "transforms")]
 
-from support import (  # noqa: E402
-    MADE_AT_RUN_TIME,  # noqa: E402
-    marks,
-    without_plugin,
-)
+from support import MADE_AT_RUN_TIME, marks, without_plugin  # noqa: E402
 
 from autograder.bridge.gradebook import Writer  # noqa: E402
 from autograder.course import ASSIGNMENT, Course  # noqa: E402
