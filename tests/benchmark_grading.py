@@ -32,6 +32,7 @@ from autograder.course import ASSIGNMENT, Course  # noqa: E402
 from autograder.handout.release import release  # noqa: E402
 
 os.environ["TRANSFORM_LAB_GRADING"] = "1"
+os.environ["PATH"] = f"{Path(sys.prefix, 'bin')}{os.pathsep}{os.environ['PATH']}"  # nbgrader runs alembic by name
 OURS = [sys.executable, "-m", "autograder", "grade", "--no-feedback"]
 STOCK = [sys.executable, "-m", "nbgrader", "autograde", ASSIGNMENT]
 
