@@ -161,6 +161,12 @@ def course():
     return Course(Path.cwd())
 
 
+def _meant(name, known):
+    """A question behind an error that names what is not known; "" where nothing that is comes near."""
+    near = difflib.get_close_matches(name, known, 1)
+    return f" Did you mean {near[0]}?" if near else ""
+
+
 # --- students and release -------------------------------------------------------------------------------------------
 
 
@@ -216,9 +222,9 @@ def prove(options):
     names = list(dict.fromkeys(options.exercises)) or list(EXERCISES)
     for name in names:
         if name not in EXERCISES:
-            near = difflib.get_close_matches(name, EXERCISES, 1)
-            meant = f" Did you mean {near[0]}?" if near else ""
-            raise CourseError(f"There is no exercise called {name}.{meant} There are {', '.join(EXERCISES)}.")
+            raise CourseError(
+                f"There is no exercise called {name}.{_meant(name, EXERCISES)} There are {', '.join(EXERCISES)}."
+            )
     with _progress() as progress:
         bar = progress.add_task("proving", total=steps(names, drawn), counts="")
         proofs = list(prove(here, names, drawn, lambda: progress.advance(bar)))
@@ -248,9 +254,9 @@ def grade(options):
     chosen = list(dict.fromkeys(options.students)) or students
     unknown = [student for student in chosen if student not in students]
     for student in unknown:
-        near = difflib.get_close_matches(student, students, 1)
-        meant = f" Did you mean {near[0]}?" if near else ""
-        errors.print(f"{student}: no submission in submitted/{student}/{ASSIGNMENT}.{meant}", markup=False)
+        errors.print(
+            f"{student}: no submission in submitted/{student}/{ASSIGNMENT}.{_meant(student, students)}", markup=False
+        )
     for student in here.astray() if not options.students else ():
         errors.print(f"{student}: not graded: its files have to be in submitted/{student}/{ASSIGNMENT}/.", markup=False)
     with Cluster(options.scheduler) if options.scheduler else nullcontext() as cluster:

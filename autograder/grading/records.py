@@ -40,12 +40,11 @@ def recorded(course: Course, student: str) -> dict[str, dict]:
 
 def told(verdict):
     """A Verdict as its record keeps it."""
-    pairs = zip_longest(verdict.says.split("\n"), verdict.hint.split("\n"), fillvalue="")
     return {
         "credit": verdict.credit,
         "done": verdict.done,
         "misconceptions": list(verdict.misconceptions),
-        "mistakes": [[*pair, _source(verdict, pair)] for pair in pairs],
+        "mistakes": [[*pair, _source(verdict, pair)] for pair in _lines(verdict)],
         "parts": list(verdict.parts.items()),  # as a list, in this order: nbformat sorts the fields
         "cases": verdict.cases,
         "family": verdict.failing and verdict.failing["family"],
@@ -74,9 +73,9 @@ def verdicts(record):
     return found
 
 
-def _lines(misconception):
-    """[(says, hint) of each mistake that a misconception consists of]"""
-    return list(zip_longest(misconception.says.split("\n"), misconception.hint.split("\n"), fillvalue=""))
+def _lines(found):
+    """[(says, hint) of each mistake] of a Verdict, or of a misconception that consists of several"""
+    return list(zip_longest(found.says.split("\n"), found.hint.split("\n"), fillvalue=""))
 
 
 def _source(verdict, pair):
