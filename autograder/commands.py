@@ -421,7 +421,8 @@ def demo(options):
             f"This course has real submissions ({real[0]}, …), and the demo would add its class to their gradebook. "
             "Run it in a fresh clone."
         )
-    make(here)
+    if not any(here.release.glob("*.ipynb")):
+        make(here)
     students = enroll(here)
     problem = sandbox.problem()
     if problem:

@@ -26,6 +26,10 @@ LOCKED = {"linux": ("x86_64", "aarch64"), "darwin": ("x86_64", "arm64")}
 MAKE_LOCK = (
     "uv pip compile --universal --python-version 3.11 --no-build --generate-hashes environment.txt -o environment.lock"
 )
+LOADED_MOST = (  # each line by a process of its own
+    "nbgrader.apps.nbgraderapp nbgrader.plugins nbconvert.exporters",
+    "matplotlib.pyplot matplotlib_inline.backend_inline scipy.spatial.transform IPython.core.interactiveshell rich.progress",
+)
 OLDEST_UV = (0, 5)  # of those on PATH
 MADE = "AUTOGRADER_MADE_ENVIRONMENT"  # in the environment of the interpreter that ours goes on in
 
@@ -156,10 +160,22 @@ def _with_uv(base, folder, packages, lock):
         _run([*_pip(base, folder), "install", *options])
         uv = folder / "bin" / "uv"
     _say("  installing the packages with uv …")
-    # The first import compiles what is used, within seconds; but not where Python was told to write no bytecode.
-    options = ["--compile-bytecode"] if sys.dont_write_bytecode else []
     python = folder / "bin" / "python"
-    _run([uv, "pip", "install", "--python", python, *options, *packages], "Downloaded", "Downloading")
+    _run([uv, "pip", "install", "--python", python, *packages], "Downloaded", "Downloading")
+    if sys.dont_write_bytecode:  # else the first import does it, within seconds
+        _compile(python)
+
+
+def _compile(python):
+    """Have Python write the bytecode of what most commands load, which they would compile at each start."""
+    code = "import importlib, sys\nfor name in sys.argv[1:]: importlib.import_module(name)"
+    options = {"stdin": subprocess.DEVNULL, "stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE, "text": True}
+    # -I, for then it does not heed the environment, which says to write none.
+    running = [subprocess.Popen([python, "-I", "-c", code, *names.split()], **options) for names in LOADED_MOST]
+    for process in running:
+        complaint = process.communicate()[1]
+        if process.returncode != 0:
+            _say(f"  commands will start slowly: {' '.join(complaint.splitlines()[-1:])[:300]}")
 
 
 def _with_pip(base, folder, packages, lock):

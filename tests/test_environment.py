@@ -3,6 +3,7 @@
 import fcntl
 import functools
 import hashlib
+import importlib.util
 import os
 import pty
 import re
@@ -250,12 +251,21 @@ def test_what_python_finds_elsewhere_is_installed_all_the_same(root, tools, tmp_
 
 
 @pytest.mark.parametrize("written", [True, False])
-def test_modules_are_compiled_where_the_first_import_will_not_do_it(root, tools, monkeypatch, written):
+def test_modules_are_compiled_where_the_first_import_will_not_do_it(root, tools, monkeypatch, written, capfd):
     needs_a_package(root)
     (tools / "uv").symlink_to(UV)
     monkeypatch.setattr(sys, "dont_write_bytecode", not written)
+    monkeypatch.setattr(environment, "LOADED_MOST", ("json lacking_here", "lacking_here no_such_module"))
     environment.make(root)
     assert bool(list((root / ".venv").rglob("lacking_here.*.pyc"))) is not written
+    assert (
+        "start slowly: ModuleNotFoundError: No module named 'no_such_module'" in capfd.readouterr().err
+    ) is not written
+
+
+def test_what_most_commands_load_is_there():
+    for names in environment.LOADED_MOST:
+        assert all(map(importlib.util.find_spec, names.split()))
 
 
 # --- as a command meets it ------------------------------------------------------------------------------------------

@@ -16,10 +16,16 @@ from . import exercises_page, source
 
 def public_key(course):
     """The text of key.json: what each notebook in source/ asks for how many points, and the public cases of its exercises."""
-    return _key(source.notebooks(course))
+    notebooks = source.notebooks(course)
+    return _key(notebooks, _public(notebooks))
 
 
-def _key(wanted):
+def _public(notebooks):
+    """{exercise: its public cases as plain data} of the exercises that these notebooks ask for"""
+    return {name: key(EXERCISES[name], PUBLIC_SEED) for notebook in notebooks.values() for name in notebook.points}
+
+
+def _key(wanted, public):
     points, notebooks = {}, {}
     for notebook in wanted.values():
         points |= notebook.points
@@ -28,7 +34,7 @@ def _key(wanted):
             for name, most in notebook.questions.items()
         ]
         notebooks[notebook.name] = {"exercises": list(notebook.points), "questions": questions}
-    exercises = {name: {"points": points[name], **key(EXERCISES[name], PUBLIC_SEED)} for name in points}
+    exercises = {name: {"points": points[name], **public[name]} for name in points}
     return f'{{"notebooks":{_json(notebooks)},\n"exercises":{{\n{_by_line(exercises)}\n}}}}\n'
 
 
@@ -50,7 +56,8 @@ def release(course):
     notebooks = source.notebooks(course)
     with gradebook.opened(course) as book:
         registration.refuse_to_lose(book, notebooks)
-    before, text = course.release_contents(), _key(notebooks)
+    public = _public(notebooks)
+    before, text = course.release_contents(), _key(notebooks, public)
     key_file = course.package / "key.json"
     key_before = key_file.read_bytes() if key_file.exists() else None
     try:
@@ -70,7 +77,7 @@ def release(course):
     changes = _changes(before, course.release_contents())
     described = course.root / exercises_page.PAGE
     written = described.read_text(encoding="utf-8") if described.exists() else ""
-    if written != (text := exercises_page.page()):
+    if written != (text := exercises_page.page(public)):
         replace(described, text)
         changes.append(f"changed: {exercises_page.PAGE}")
     return changes

@@ -2,7 +2,7 @@
 
 import re
 import shutil
-from functools import cache
+from functools import cache, partial
 
 import pytest
 from editing import Edited
@@ -192,7 +192,8 @@ def same_public_cases(monkeypatch):
     key = handout.key
     once = cache(lambda name, seed: key(EXERCISES[name], seed))
     monkeypatch.setattr(handout, "key", lambda exercise, seed: once(exercise.name, seed))
-    monkeypatch.setattr(handout.exercises_page, "page", cache(handout.exercises_page.page))
+    page = cache(partial(handout.exercises_page.page, {}))
+    monkeypatch.setattr(handout.exercises_page, "page", lambda public: page())
 
 
 def with_solutions(course, student):

@@ -41,8 +41,11 @@ class NotPlain(ValueError):
     """What was received is not plain data of a permitted size."""
 
 
-def encode(value: object, depth: int = 0) -> Plain:
-    """Plain data for `value`, of bounded size; what has no plain form becomes `{"other": type name}`."""
+def encode(value: object, depth: int = 0, room: list[int] | None = None) -> Plain:
+    """Plain data for `value`, of bounded size; what has no plain form becomes `{"other": type name}`.
+
+    room: how many more things may be in the outermost list, as its one item; None outside of lists
+    """
     if type(value) is float:  # most of all there is
         return _number(value)
     if value is None or isinstance(value, (bool, np.bool_)):
@@ -54,16 +57,34 @@ def encode(value: object, depth: int = 0) -> Plain:
     if isinstance(value, str):
         return value[:LONGEST_TEXT]
     if isinstance(value, np.ndarray):
+        _take(room, value.size)
         return _array(value)
     if depth >= DEEPEST:
         return _other(value)
     if (name := _message(value)) is not None:
-        fields = {field: encode(getattr(value, field), depth + 1) for field in MESSAGES[name]}
+        fields = {field: encode(getattr(value, field), depth + 1, room) for field in MESSAGES[name]}
         return {"message": name, "fields": fields}
     if isinstance(value, (list, tuple)) and len(value) <= LONGEST_LIST:
-        plain = [encode(item, depth + 1) for item in value]
-        return plain if depth or _items(plain) <= LARGEST_ARRAY else _other(value)
+        if room is not None:
+            _take(room, len(value))
+            return [encode(item, depth + 1, room) for item in value]
+        try:
+            room = [LARGEST_ARRAY - len(value)]
+            return [encode(item, depth + 1, room) for item in value]
+        except _Full:
+            return _other(value)
     return _other(value)
+
+
+class _Full(Exception):
+    """There is too much in a list."""
+
+
+def _take(room, things):
+    if room is not None:
+        room[0] -= things
+        if room[0] < 0:
+            raise _Full
 
 
 def _message(value):
