@@ -235,7 +235,7 @@ def test_the_demo(course, sandboxed):
     assert "demo_" not in run(course, "export")[1]
 
 
-def test_the_demo_runs_without_bubblewrap_and_says_so(course, without_bubblewrap):
+def test_the_demo_runs_without_bubblewrap_and_says_so(course, without_bubblewrap, slow):
     code, said = run(course, "demo", path=without_bubblewrap)
     assert code == 0, said
     assert "runs its own submissions without a sandbox" in said
@@ -256,7 +256,7 @@ def test_doctor(course, sandboxed, without_bubblewrap):
     assert code == 1 and "LOOK  No sandbox" in said
 
 
-def test_release_says_what_changed(course):
+def test_release_says_what_changed(course, slow):
     path = course.source / "3_chaining.ipynb"
     raw = json.loads(path.read_text())
     raw["cells"][0]["source"] = ["# Another title"]

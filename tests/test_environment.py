@@ -174,7 +174,7 @@ def test_uv_is_fetched_where_there_is_none_that_serves(root, tools, monkeypatch,
         ("fails", "error: the disk is full cause: too much on it"),
     ],
 )
-def test_pip_is_used_where_uv_is_not_to_be_had_or_fails(root, tools, monkeypatch, capsys, why, reason):
+def test_pip_is_used_where_uv_is_not_to_be_had_or_fails(root, tools, monkeypatch, capsys, why, reason, slow):
     needs_a_package(root)
     if why == "other bytes":
         monkeypatch.setenv("PIP_FIND_LINKS", str(root))
@@ -192,7 +192,7 @@ def test_pip_is_used_where_uv_is_not_to_be_had_or_fails(root, tools, monkeypatch
 
 
 @pytest.mark.parametrize("with_uv", [True, False])
-def test_other_bytes_than_the_locks_are_not_installed(root, tools, with_uv):
+def test_other_bytes_than_the_locks_are_not_installed(root, tools, with_uv, slow):
     needs_a_package(root)
     if with_uv:
         (tools / "uv").symlink_to(UV)
@@ -203,7 +203,7 @@ def test_other_bytes_than_the_locks_are_not_installed(root, tools, with_uv):
     assert not has_the_package(root / ".venv" / "bin" / "python")
 
 
-def test_pip_that_python_carries_along_serves_where_it_has_none(root, tools, monkeypatch):
+def test_pip_that_python_carries_along_serves_where_it_has_none(root, tools, monkeypatch, slow):
     """As on Debian, where pip is a package of its own."""
     needs_a_package(root)
     run = environment._run

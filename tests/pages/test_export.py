@@ -163,7 +163,7 @@ def test_an_empty_gradebook_is_said(course):
     assert remarks(course, "canvas") == ["Nobody is in the gradebook yet: run `python3 -m autograder grade` first."]
 
 
-def test_the_command_knows_every_format(course):
+def test_the_command_knows_every_format(course, slow):
     for name in export.FORMATS:
         code, said = run(course, "export", "--format", name)
         assert code == 0 and said.startswith(",".join(table(course, name)[0]) + "\n")

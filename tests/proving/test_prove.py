@@ -138,7 +138,7 @@ def test_the_table_counts(said):
     assert re.search(r"wrong-sign \(1\) +all families +by its own name", said)
 
 
-def test_what_slips_through_is_said_with_a_case_that_closes_it(scratch, said):
+def test_what_slips_through_is_said_with_a_case_that_closes_it(scratch, said, slow):
     assert details_of(said, "the misconception only-up (2), not caught on all 3 seeds")
     assert details_of(said, "the wrong solution not_far, accepted on all 3 seeds")
     source = "return np.array([p[0], p[1], p[2] + height])"
@@ -220,7 +220,7 @@ def test_a_specification_that_stops_is_said_without_a_traceback(scratch):
 
 
 @pytest.mark.parametrize("name", EXERCISES)
-def test_the_search_finds_what_is_wrong_and_nothing_that_is_right(name, monkeypatch):
+def test_the_search_finds_what_is_wrong_and_nothing_that_is_right(name, monkeypatch, slow):
     exercise = EXERCISES[name]
     tried = to_be_tried(Course(ROOT), exercise)
     known_right = [each.function for each in tried if each.kind == "right"]

@@ -473,7 +473,7 @@ def test_a_text_is_cut_to_what_fits(viewer):
     assert viewer.text == "[[1. 0.]\n [0. 1.]]"
 
 
-def test_many_frames_are_drawn_in_bearable_time():
+def test_many_frames_are_drawn_in_bearable_time(slow):
     viewer = Viewer("f0")
     for i in range(1, 200):
         viewer.add_frame(f"f{i}", tft.rotation_matrix(0.1, [0, 1, 1]) @ tft.translation_matrix([1, 0, 0]), f"f{i - 1}")
