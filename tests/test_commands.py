@@ -176,7 +176,7 @@ def test_outside_a_course(course, tmp_path):
     assert "is no course folder" in result.stderr and "nbgrader_config.py" in result.stderr
 
 
-def test_without_bubblewrap_nothing_is_graded_unless_asked_for(course, hand_in, solved, without_bubblewrap):
+def test_without_bubblewrap_nothing_is_graded_unless_asked_for(course, hand_in, solved, without_bubblewrap, slow):
     hand_in(course, "alice", {"1_rotation": solved["1_rotation"]})
     code, said = run(course, "grade", "--no-feedback", path=without_bubblewrap)
     assert code == 2

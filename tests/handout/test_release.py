@@ -28,11 +28,11 @@ def test_the_public_key_is_up_to_date():
     assert (ROOT / "source/transforms/transform_lab/key.json").read_text(encoding="utf-8") == public_key(Course(ROOT))
 
 
-def test_releasing_again_changes_nothing(course):
+def test_releasing_again_changes_nothing(course, slow):
     assert release(course) == []
 
 
-def test_a_change_in_source_is_said(course):
+def test_a_change_in_source_is_said(course, slow):
     path = course.source / "1_rotation.ipynb"
     notebook = nbformat.read(path, as_version=4)
     notebook.cells[0].source += "\n\nOne more sentence."

@@ -38,9 +38,8 @@ def joined(name, parts):
 def test_the_name_does_not_hang_on_the_cases(name, thorough):
     """Whatever a wrong program is called on some cases, it is called on others."""
     with np.errstate(all="ignore"):
-        for mutant in mutants(EXERCISES[name].reference, "autograder.exercises"):
-            seeds = SEEDS[: 3 if thorough else 2]
-            called = {judged(name, mutant.function, seed).misconceptions for seed in seeds}
+        for mutant in mutants(EXERCISES[name].reference, "autograder.exercises")[:: 1 if thorough else 5]:
+            called = {judged(name, mutant.function, seed).misconceptions for seed in SEEDS[:3]}
             assert len(called) == 1 or called <= {(), *((identifier,) for identifier in GENERAL)}, mutant.what
 
 

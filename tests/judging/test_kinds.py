@@ -301,5 +301,5 @@ def test_the_judge_and_feedback_take_a_new_kind(exercise, body, score, misconcep
 def test_report_and_the_page_of_exercises_take_a_new_kind(exercise):
     example = examples.of_misconception("turn", "radians-returned")
     assert "expected" in example and re.search(r"yours     \d\.\d+   off by \d+(\.\d+)? degrees", example)
-    described = exercises_page._described(exercise)
+    described = exercises_page._described(exercise, key(exercise, PUBLIC_SEED))
     assert described["rows"] == [{"id": "radians-returned", "says": IN_RADIANS, "hint": "Convert it.", "earns": [0]}]
