@@ -203,7 +203,7 @@ def test_options_that_make_no_sense(course, arguments, words):
     assert code == 2 and words in said
 
 
-def test_options_of_other_programs_are_passed_on(course):
+def test_options_of_other_programs_are_passed_on(course, slow):
     code, said = run(course, "test", "--version")
     assert code == 0 and said.startswith("pytest ")
     code, said = run(course, "lab", "--version")

@@ -200,7 +200,7 @@ def test_every_exception_is_one():
             assert written[solution] != called
 
 
-def test_most_of_what_students_wrote_has_a_name():
+def test_most_of_what_students_wrote_has_a_name(slow):
     nameable = [(name, function) for name, names, function in WRONG if expected_names(names, function)]
     named = sum(bool(judged(name, function).misconceptions) for name, function in nameable)
     print(f"{named} of {len(nameable)} wrong solutions that have a name get it")
