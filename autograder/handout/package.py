@@ -10,6 +10,7 @@ from pathlib import Path
 
 from ..course import ASSIGNMENT, CourseError
 
+LICENSE = "LICENSE"  # asks to be kept with every copy
 GRADESCOPE = Path(__file__).parent / "gradescope_files"  # what has to be at the root of its zip
 # What grades one student's files, beside the solutions in source/ and what was released.
 GRADER = (
@@ -19,6 +20,7 @@ GRADER = (
     "environment.txt",
     "environment.lock",
     "nbgrader_config.py",
+    LICENSE,
 )
 ABOUT_ENVIRONMENT = f"""\
 # What the notebooks need. To install it: pip install -r environment.txt
@@ -33,6 +35,7 @@ def for_students(course):
     if not contents:
         raise CourseError("There is nothing to package: run `python3 -m autograder release` first.")
     text = (course.root / "environment.txt").read_text(encoding="utf-8")
+    contents[LICENSE] = (course.root / LICENSE).read_bytes()
     contents["environment.txt"] = (ABOUT_ENVIRONMENT + students_section(text)).encode()
     return {f"{ASSIGNMENT}/{path}": content for path, content in contents.items() if _is_work(path)}
 

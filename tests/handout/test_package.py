@@ -17,7 +17,7 @@ from pathlib import Path
 import jsonschema
 import nbformat
 import pytest
-from support import ASKED, NAMES, points, points_by_hand, run
+from support import ASKED, NAMES, ROOT, points, points_by_hand, run
 
 from autograder import environment
 from autograder.course import Course, CourseError
@@ -79,6 +79,8 @@ def test_the_same_bytes_on_any_machine_and_any_day(course, tmp_path):
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
         with zipfile.ZipFile(tmp_path / "one" / name) as archive:
             entries = archive.infolist()
+            (license,) = (entry for entry in archive.namelist() if entry.endswith("LICENSE"))
+            assert archive.read(license) == (ROOT / "LICENSE").read_bytes()
         assert [entry.filename for entry in entries] == sorted(entry.filename for entry in entries)
         assert {entry.date_time for entry in entries} == {(1980, 1, 1, 0, 0, 0)}
         assert {entry.create_system for entry in entries} == {3}
