@@ -41,7 +41,9 @@ def pytest_configure(config):
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config, items):
-    """Mark each test with its tiers; leave the quick ones alone, or begin with files of many others, which take longest."""
+    """Mark each test with its tiers; leave the quick ones alone, or begin with files that take longest: those with tests
+    that look at a great many cases then, and those of many other tiers.
+    """
     for item in items:
         for fixture in TIERS.keys() & set(item.fixturenames):
             item.add_marker(TIERS[fixture])
@@ -51,7 +53,9 @@ def pytest_collection_modifyitems(config, items):
         config.hook.pytest_deselected(items=others)
         others = []
     many = Counter(item.path for item in others)
-    items[:] = sorted(others, key=lambda item: -many[item.path]) + quick
+    longest = [item for item in quick if others and "thorough" in item.fixturenames]
+    rest = [item for item in quick if item not in longest]
+    items[:] = longest + sorted(others, key=lambda item: -many[item.path]) + rest
 
 
 def tiers(item):

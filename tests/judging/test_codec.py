@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from transform_lab import Point, Pose, PoseStamped, Quaternion
-from transform_lab.judging.codec import LARGEST_ARRAY, NotPlain, Other, decode, encode
+from transform_lab.judging.codec import LARGEST_ARRAY, LONGEST_LIST, NotPlain, Other, decode, encode
 
 
 def there_and_back(value):
@@ -79,6 +79,26 @@ def test_lists_in_lists_end_somewhere():
     endless = []
     endless.append(endless)
     assert len(json.dumps(encode(endless))) < 100
+
+
+class Counted(float):
+    """A number that counts how often it is looked at."""
+
+    looks = 0
+
+    def __float__(self):
+        self.looks += 1
+        return 0.0
+
+
+@pytest.mark.parametrize("inside", [lambda item: item, lambda item: Point(item, 0, 0)])
+def test_no_more_of_a_list_is_looked_at_than_is_kept(inside):
+    number = Counted()
+    few, many = ([[inside(number)] * LONGEST_LIST] * times for times in (4, LONGEST_LIST))
+    assert len(encode(few)) == 4 and number.looks == 4 * LONGEST_LIST
+    assert encode(many) == {"other": "list"} and number.looks <= 4 * LONGEST_LIST + LARGEST_ARRAY
+    assert encode(Pose(Point(many, 0, 0), Quaternion()))["fields"]["position"]["fields"]["x"] == {"other": "list"}
+    assert encode([np.zeros(LARGEST_ARRAY // 2)] * 3) == {"other": "list"}
 
 
 @pytest.mark.parametrize(

@@ -344,7 +344,7 @@ LIES = [
             a = [a] * 100
         return a
         """,
-        "timeout|error|killed",
+        "graded",
     ),
     answers("a huge array", "huge = np.ones(10**7)", "huge"),
     answers("a huge text", "huge = 'x' * 10**8", "huge"),
