@@ -50,7 +50,9 @@ class Edited:
         )
         self.notebook.cells[-1:-1] = [nbformat.v4.new_markdown_cell(heading), answer]
 
-    def say_points(self, points):
-        """Write so many points into the opening line."""
+    def say_points(self, points=None):
+        """Write so many points into the opening line; as many as the cells say now, when none are given."""
+        if points is None:
+            points = sum(cell.metadata.get("nbgrader", {}).get("points", 0) for cell in self.notebook.cells)
         opening = self.notebook.cells[0]
         opening.source = re.sub(r"\d+(\s+)points?\.$", rf"{points:g}\1points.", opening.source)

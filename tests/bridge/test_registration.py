@@ -22,13 +22,13 @@ from autograder.pages import report
 def less(folder):
     with Edited(folder, "1_rotation") as edited:
         edited.remove_exercise("is_rotation")
-        edited.say_points(5)
+        edited.say_points()
 
 
 def more(folder):
     with Edited(folder, "3_chaining") as edited:
         edited.add_question("mine", 1)
-        edited.say_points(5)
+        edited.say_points()
 
 
 def renamed(folder):
@@ -47,7 +47,7 @@ def repriced(folder):
     with Edited(folder, "1_rotation") as edited:
         edited.named("rotation_about_z").metadata.nbgrader.points = 3
         edited.replace("`rotation_about_z` (2 points)", "`rotation_about_z` (3 points)")
-        edited.say_points(8)
+        edited.say_points()
 
 
 # {change of notebooks: what is said of it where it is too late}
@@ -244,7 +244,7 @@ def test_a_changed_course_from_release_to_export_and_again(course, same_public_c
         edited.replace("`make_transform` (1 point)", "`make_transform` (0 points)")
         edited.named("transform_point").metadata.nbgrader.points = 4
         edited.replace("`transform_point` (2 points)", "`transform_point` (4 points)")
-        edited.say_points(15)
+        edited.say_points()
     handout.release(course)
     said = graded(course)
     assert "2 graded" in said and "set back" not in said
@@ -254,7 +254,7 @@ def test_a_changed_course_from_release_to_export_and_again(course, same_public_c
 
     with Edited(course.source, "4_inversion") as edited:
         edited.add_question("later", 1)
-        edited.say_points(9)
+        edited.say_points()
     with pytest.raises(CourseError) as refused:
         handout.release(course)
     said = str(refused.value)

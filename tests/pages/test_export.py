@@ -4,7 +4,7 @@ import csv
 import io
 
 import pytest
-from support import run
+from support import points, points_by_hand, run
 
 from autograder.bridge.gradebook import Writer
 from autograder.course import CourseError
@@ -13,6 +13,7 @@ from autograder.grading.judge import Row
 from autograder.grading.marks import Marks
 from autograder.pages import export
 
+MOST = str(points() + points_by_hand())
 PEOPLE = {
     "ada": {"first_name": "Ada", "last_name": "Lovelace", "email": "ada@example.org", "lms_user_id": "1815"},
     "joerg": {"first_name": 'Jörg "Jojo"', "last_name": "Müller, Jr.", "email": "j@example.org", "lms_user_id": "3f2a"},
@@ -62,14 +63,14 @@ def remarks(course, name):
 def test_a_plain_table(graded):
     assert table(graded, "plain") == [
         ["student", "score", "max_score", "needs_manual_grade"],
-        *([student, "1.5", "40.0", "yes"] for student in sorted(PEOPLE)),
+        *([student, "1.5", MOST, "yes"] for student in sorted(PEOPLE)),
     ]
 
 
 def test_the_columns_of_canvas(graded):
     assert table(graded, "canvas", "Transforms, part 1 (4711)") == [
         ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", "Transforms, part 1 (4711)"],
-        ["Points Possible", "", "", "", "", "40.0"],
+        ["Points Possible", "", "", "", "", MOST],
         ["Lovelace, Ada", "1815", "", "ada", "", "1.5"],
         # an id that only begins with a number would be read as 3
         ['Müller, Jr., Jörg "Jojo"', "", "3f2a", "joerg", "", "1.5"],

@@ -1,7 +1,7 @@
 """Hostile notebooks, in the real sandbox: each earns what its honest part earns, and does no harm to anything else.
 
 Attacks are graded in classes, beside an honest student and a plainly wrong one, by the same pool that grades a course.
-Most are one cell, put below the imports of a solved notebook (`harm`: all 7 points stay) or of one whose functions are
+Most are one cell, put below the imports of a solved notebook (`harm`: all points stay) or of one whose functions are
 all wrong (`cheat`: 0 points stay). Words in capitals between @ stand for what is only known when the class is graded.
 """
 
@@ -23,7 +23,8 @@ from pathlib import Path
 
 import nbformat
 import pytest
-from support import PATIENCE
+from support import ASKED, PATIENCE
+from support import points as points_of
 
 from autograder.bridge.gradebook import Writer
 from autograder.course import Course
@@ -35,8 +36,8 @@ from autograder.sandbox import Limits
 from autograder.untrusted import PICTURES, TEXT
 
 ONE = "1_rotation"
-EXERCISES = ("rotation_about_z", "rotation_from_axes", "is_rotation", "same_rotation")
-POINTS = 7.0
+EXERCISES = tuple(ASKED[ONE].points)
+POINTS = points_of(ONE)
 MARK = "hostile-mark"  # in the names of all that attacks leave lying about
 SHM_KEY = 0x686F7374
 SECRET = "a-secret-of-the-grader"
@@ -72,7 +73,8 @@ def cheat(name, cell, says="", **more):
     return Attack(name, cell, wrong=True, points=0.0, says=says, **more)
 
 
-def in_call(name, body, status, says="", exercise="is_rotation", points=5.0):
+def in_call(name, body, status, says="", exercise="is_rotation"):
+    points = POINTS - ASKED[ONE].points[exercise]
     code = f"def {exercise}(*arguments, **named):\n" + "".join(f"    {line}\n" for line in plain(body).splitlines())
     return Attack(name, solutions={exercise: code}, points=points, status={exercise: status}, says=says)
 
@@ -1192,7 +1194,7 @@ NOTEBOOKS = [
         "the name of another exercise",
         changed(claims_another),
         "is missing",
-        points=5.0,
+        points=POINTS - ASKED[ONE].points["is_rotation"],
         status={"is_rotation": "missing"},
     ),
     files(
@@ -1642,7 +1644,7 @@ def test_attack(graded, name, request):
 
 @pytest.mark.parametrize("graded", GROUPS, indirect=True)
 def test_neighbours_get_their_points(graded):
-    for student, points, status in ((HONEST, 34.0, {"graded"}), (WRONG, 0.0, {"graded", "missing"})):
+    for student, points, status in ((HONEST, points_of(), {"graded"}), (WRONG, 0.0, {"graded", "missing"})):
         result, problem = graded.found[student]
         assert problem is None and result.problems == [p for p in result.problems if "not handed in" in p]
         assert sum(row.score for row in result.rows) == points
