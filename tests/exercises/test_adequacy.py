@@ -26,7 +26,7 @@ every_exercise = pytest.mark.parametrize("name", EXERCISES)
 @every_exercise
 def test_adequacy(name, thorough):
     exercise, course = EXERCISES[name], Course(ROOT)
-    drawn_from = seeds(201 if thorough else 3)
+    drawn_from = seeds(201 if thorough else 2)
     tried = to_be_tried(course, exercise)
     assert notebook_solution(course, name) and {"misconception", "mutant", "right"} <= {each.kind for each in tried}
     assert not made_no_longer(exercise, tried), "declared as equivalent, and made no longer"
@@ -47,7 +47,7 @@ def test_adequacy(name, thorough):
 def test_it_is_the_judge_who_says_so(name, thorough):
     """What is measured quickly, the judge says too."""
     exercise = EXERCISES[name]
-    tried = to_be_tried(Course(ROOT), exercise)[:: 1 if thorough else 5]
+    tried = to_be_tried(Course(ROOT), exercise)[:: 1 if thorough else 10]
     public = key(exercise, PUBLIC_SEED)
     with quiet():
         verdicts = [

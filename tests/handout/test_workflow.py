@@ -198,7 +198,7 @@ def test_a_students_repository_is_graded_and_told(kind, course, solved, sandboxe
         assert "3&#95;chaining&#46;ipynb&#58; left out&#59; it is a link&#46;" in summary
 
 
-def test_a_job_in_which_nothing_could_be_graded_fails_and_tells_nobody(course):
+def test_a_job_in_which_nothing_could_be_graded_fails_and_tells_nobody(course, slow):
     workspace = course.root
     shutil.rmtree(workspace / "notebooks")
     (workspace / "student").mkdir()

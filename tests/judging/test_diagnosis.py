@@ -38,7 +38,7 @@ def joined(name, parts):
 def test_the_name_does_not_hang_on_the_cases(name, thorough):
     """Whatever a wrong program is called on some cases, it is called on others."""
     with np.errstate(all="ignore"):
-        for mutant in mutants(EXERCISES[name].reference, "autograder.exercises")[:: 1 if thorough else 5]:
+        for mutant in mutants(EXERCISES[name].reference, "autograder.exercises")[:: 1 if thorough else 10]:
             called = {judged(name, mutant.function, seed).misconceptions for seed in SEEDS[:3]}
             assert len(called) == 1 or called <= {(), *((identifier,) for identifier in GENERAL)}, mutant.what
 
@@ -235,7 +235,7 @@ def test_two_mistakes_in_two_parts_are_both_named(name, thorough):
     candidates = of_one_part(name)
     pairs = list(product(candidates.get(first_part, []), candidates.get(second_part, [])))
     if not thorough:
-        pairs = pairs[:: len(pairs) // 20 + 1]
+        pairs = pairs[:: len(pairs) // 10 + 1]
     whole, right = {misconception.id for misconception in EXERCISES[name].misconceptions}, 0
     assert pairs
     for first, second in pairs:

@@ -147,7 +147,7 @@ def test_the_id_of_a_student_is_never_changed_but_refused(graded):
             table(graded, name)
 
 
-def test_the_command(graded):
+def test_the_command(graded, slow):
     code, said = run(graded, "export", "--format", "canvas", "--column", "Lab 3", "--output", "points.csv")
     assert code == 0
     assert said.splitlines()[0] == "points.csv is written." and "not final" in said
