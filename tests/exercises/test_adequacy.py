@@ -1,6 +1,6 @@
 """The grader is proven right: no wrong solution passes, no right one fails, and misconceptions get their own name.
 
-For every exercise, for its public cases and for the hidden cases of 200 seeds (of two, among the quick tests):
+For every exercise, for its public cases and for the hidden cases of 200 seeds (of one, among the quick tests):
 
 - every misconception is caught; on every tenth seed it is also named by its own id alone
 - every syntactic mutant of the reference, and of the solution in the notebook, is caught, unless the specification
