@@ -34,9 +34,15 @@ def pytest_addoption(parser):
 
 def pytest_configure(config):
     """What is asked for by name is run, quick or not."""
-    if not hasattr(config, "workerinput"):  # a worker has the options of the process that started it, --all among them
+    if hasattr(config, "workerinput"):  # of a process that pytest-xdist has started
+        config.option.all = config.workerinput["all"]
+    else:
         named = config.args_source is config.ArgsSource.ARGS
         config.option.all |= named or any(map(config.getoption, ("keyword", "markexpr", "lf")))
+
+
+def pytest_configure_node(node):
+    node.workerinput["all"] = node.config.option.all
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -29,6 +29,9 @@ def test_what_is_named_is_chosen_from_all_tests(slow):
     attacks = ROOT / "tests/sandbox/test_account.py"
     assert attacks not in chosen()
     assert chosen(str(attacks)) == chosen("-k", "test_account") == {attacks}
+    slow_one = f"{ROOT}/tests/test_tiers.py::test_every_room_has_quick_tests"
+    code, said = run(ROOT, "test", "--numprocesses", "1", slow_one)
+    assert code == 0 and "1 passed" in said
 
 
 def test_a_quick_test_finds_no_tool():
