@@ -59,9 +59,8 @@ def pytest_collection_modifyitems(config, items):
         config.hook.pytest_deselected(items=others)
         others = []
     many = Counter(item.path for item in others)
-    longest = [item for item in quick if others and "thorough" in item.fixturenames]
-    rest = [item for item in quick if item not in longest]
-    items[:] = longest + sorted(others, key=lambda item: -many[item.path]) + rest
+    others.sort(key=lambda item: -many[item.path])
+    items[:] = sorted(others + quick, key=lambda item: "thorough" not in item.fixturenames) if others else quick
 
 
 def tiers(item):

@@ -307,10 +307,9 @@ def test_two_first_commands_wait_for_each_other(root, command):
 
 def test_an_interrupted_set_up_is_said_and_repaired(root, tools, command):
     pretend_uv(tools, f"echo $$ > {root}/pid; /bin/mv {root}/pid {root}/started; exec /bin/sleep 600")
-    at_a_terminal = functools.partial(
-        signal.signal, signal.SIGINT, signal.SIG_DFL
-    )  # a shell's job in the background ignores it
-    process = subprocess.Popen(command, cwd=root, stderr=subprocess.PIPE, text=True, preexec_fn=at_a_terminal)
+    # As at a terminal: a job that a shell has put into the background ignores interrupts.
+    heeding = functools.partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
+    process = subprocess.Popen(command, cwd=root, stderr=subprocess.PIPE, text=True, preexec_fn=heeding)
     while not (root / "started").exists() and process.poll() is None:
         time.sleep(0.05)
     sleeping = int((root / "started").read_text())

@@ -4,12 +4,14 @@ import json
 import re
 import shutil
 from html.parser import HTMLParser
+from pathlib import Path
 
 import nbformat
 import numpy as np
 import pytest
 from nbgrader.api import Gradebook
 from nbgrader.coursedir import CourseDirectory
+from nbgrader.server_extensions import formgrader
 from support import ASKED, Parsed, key_of, markdown, points, points_by_hand, run
 from transform_lab.judging import panel
 from transform_lab.judging.verdict import Reply, examine
@@ -21,7 +23,7 @@ from autograder.course import ASSIGNMENT, Course
 from autograder.grading import public_example
 from autograder.grading.records import RECORD, recorded
 from autograder.pages import examples, feedback
-from autograder.pages.exporter import LEFT_OUT
+from autograder.pages.exporter import LEFT_OUT, NO_NAME, Feedback
 
 TWO, FIVE = "2_homogeneous_transforms", "5_pre_grasp"
 MOST = 1_500_000  # bytes of a student's feedback
@@ -50,6 +52,7 @@ def make_transform(R, p):
     return np.eye(4) * calls
 """.replace("HIDDEN", str(len(key_of("make_transform")["cases"])))
 HALF_A_CHARACTER = "def make_transform(R, p):\n    return ['\\ud800', '<script>MARK()</script>', R[0, 0]]\n"
+PIXEL = "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg=="  # a PNG
 LOUD = """import base64, os
 from IPython.display import Image, display
 print("all work and no play " * 20_000)
@@ -337,6 +340,22 @@ def test_nothing_is_loaded_from_anywhere(classroom):
             assert attributes.get("src", "data:").startswith("data:"), path
             assert tag == "a" or "href" not in attributes
         assert "url(" not in "".join(re.findall(r"<style.*?</style>", text, re.DOTALL)) and "@import" not in text
+
+
+def test_a_picture_without_words_says_that_there_are_none():
+    outputs = [
+        nbformat.v4.new_output(
+            "display_data", data={"image/png": PIXEL}, metadata={"image/png": {"alt": alt}} if alt else {}
+        )
+        for alt in ("", "a hand")
+    ]
+    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell("draw()", outputs=outputs)])
+    exporter = Feedback(
+        template_name="feedback", extra_template_basedirs=[str(Path(formgrader.__file__).parent / "templates")]
+    )
+    points = {"notebook": "1_rotation", "score": 0, "max_score": 0, "late_penalty": 0}
+    page, _ = exporter.from_notebook_node(notebook, {"nbgrader": points})
+    assert re.findall(r'alt="(.*?)"', page) == [NO_NAME, "a hand"]
 
 
 def test_every_formula_of_the_notebooks_becomes_mathml(released):
