@@ -15,7 +15,7 @@ import dateutil.parser
 
 from ..course import Course
 from ..untrusted import printable
-from .restore import LARGEST
+from .reading import LARGEST
 
 TIMESTAMP, SECRET = "timestamp.txt", "submission_secret.txt"  # written by `nbgrader submit`
 MOST_FILES = 200  # handed in besides the notebooks
