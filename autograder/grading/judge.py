@@ -7,7 +7,7 @@ exercise, and compares what comes back. So nothing a student redefines in the no
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from types import MappingProxyType
 
 import nbformat
@@ -16,11 +16,13 @@ from transform_lab.judging.plain import PlainExercise
 from transform_lab.judging.status import STATUSES, refuse_unknown
 from transform_lab.judging.verdict import Verdict, examine
 
+from ..intake import python_text
 from ..intake.restore import Intake
 from ..released import Released
 from ..sandbox import Ended, Sandbox
 from ..untrusted import safe
 from . import public_example
+from .failed_cells import FailedCell, explained, failed, stopped
 
 MOST_RESTARTS = 10  # times a notebook is run again without the cell or call that brought its process down
 
@@ -66,14 +68,13 @@ def judge(
     examples: dict[str, str] = {}
     verdicts = {name: Verdict(name, status, says=STATUSES[status].means) for name, status in intake.statuses.items()}
     if set(verdicts) != set(released.points):
-        skip: set[int] = set()
+        skip: dict[int, FailedCell] = {}
         deadline = time.monotonic() + sandbox.limits.notebook
         for _ in range(MOST_RESTARTS + 1):
             with sandbox.notebook(deadline) as process:
                 culprit = _run(intake, released, keys, process, verdicts, skip, public, examples)
             if culprit is None or process.exhausted:
                 break
-            skip.add(culprit)
         status = "timeout" if process.exhausted else "error"
         for name in released.points:
             verdicts.setdefault(name, Verdict(name, status, says="The notebook did not get as far as this cell."))
@@ -99,7 +100,16 @@ def score(verdict: Verdict, points: float) -> float:
 
 
 def _run(intake, released, keys, process, verdicts, skip, public, examples):
-    """Run the notebook from its start; returns the position of a cell that brought the process down, or None."""
+    """Run the notebook from its start; returns the position of a cell that brought the process down, or None.
+
+    skip: {position: FailedCell} of those that did so before; that cell is added. What the course's own notebook imports is
+    there from the start, whatever else a student has written into the cell that imports it.
+    """
+    failures = dict(skip)
+    try:
+        process.prepare(_imports(released))
+    except Ended as ended:
+        intake.say(released, f"it could not be started: {ended.reason}")
     for position, cell in enumerate(intake.notebook.cells):
         if cell.cell_type != "code" or position in skip:
             continue
@@ -110,20 +120,42 @@ def _run(intake, released, keys, process, verdicts, skip, public, examples):
             except Ended as ended:
                 cell.outputs = [nbformat.from_dict(_stopped(ended))]
                 intake.say(released, f"cell {position + 1} had to be stopped: {ended.reason}")
+                skip[position] = stopped(cell.source, ended.reason)
                 return position
             cell.outputs = [nbformat.from_dict(output) for output in map(safe, run.outputs) if output]
             cell.execution_count = run.execution_count
+            if run.failed:
+                failures[position] = failed(cell.source, cell.outputs)
             if run.ended:
                 _end(intake, released, verdicts, position)
                 return None
         elif name not in verdicts:
             call = partial(process.call, name)
-            verdicts[name] = examine(name, keys[name], call)
+            verdict = examine(name, keys[name], call)
+            verdicts[name] = explained(verdict, failures.values(), _solution(intake, released, name))
             if name in public and (example := public_example.find(verdicts[name], public[name], call)):
                 examples[name] = example
             if process.gone:
+                skip[position] = stopped(cell.source, "its function's process ended")
                 return position
     return None
+
+
+@cache
+def _imports(released):
+    """The import statements of a released notebook's cells."""
+    found = (python_text.imports(cell.source) for cell in released.notebook.cells if cell.cell_type == "code")
+    return "\n".join(dict.fromkeys(filter(None, found)))
+
+
+def _solution(intake, released, exercise):
+    """The text of the cell in which an exercise's function should be; "" without one."""
+    for cell in intake.notebook.cells:
+        name = cell.metadata.get("nbgrader", {}).get("grade_id")
+        if name in released.cells and name != exercise:
+            if exercise in python_text.defines(released.cells[name].source):
+                return cell.source
+    return ""
 
 
 def _end(intake, released, verdicts, position):

@@ -47,6 +47,12 @@ def binds(source: str) -> set[str]:
     return found
 
 
+def defines(source: str) -> list[str]:
+    """The functions that a cell defines at its top level, in order."""
+    tree = parsed(source)
+    return [node.name for node in tree.body if isinstance(node, ast.FunctionDef)] if tree else []
+
+
 def checks(source: str) -> tuple[list[str], bool]:
     """([the names that a cell calls `check` with], whether it does nothing else than one such call)."""
     tree = parsed(source)

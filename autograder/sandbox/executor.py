@@ -210,12 +210,18 @@ class Executor:
                 Path(path).write_bytes(base64.b64decode(content))
         sys.path.insert(0, "")  # as in Jupyter: modules beside the notebook
 
+    def prepare(self, source):
+        """Run lines of the grader's before the first cell; they have no outputs, and do not count."""
+        exec(source, self.shell.user_ns)
+        return {}
+
     def run_cell(self, source):
-        """Run one cell: {"outputs", "execution_count", "ended"}."""
+        """Run one cell: {"outputs", "execution_count", "ended", "failed"}."""
+        failed = True
         try:
             self.running = True
             # A Jupyter cell runs inside an event loop: `await` works, asyncio.run says that a loop is running.
-            self.loop.run_until_complete(self._run(source))
+            failed = not self.loop.run_until_complete(self._run(source))
         except KeyboardInterrupt:  # IPython shows those of the cell itself; this one came between two steps of its own
             self.shell.showtraceback()
         finally:
@@ -225,6 +231,7 @@ class Executor:
             "outputs": self.outputs.take(),
             "execution_count": self.shell.execution_count - 1,
             "ended": self.shell.ended,
+            "failed": failed,
         }
 
     def call(self, name, args, kwargs):
@@ -246,7 +253,7 @@ class Executor:
         return reply
 
     async def _run(self, source):
-        """As ipykernel does it."""
+        """As ipykernel does it; whether it ran without an error."""
         shell, problem = self.shell, None
         try:
             cell = shell.transform_cell(source)
@@ -257,6 +264,7 @@ class Executor:
         )
         shell.events.trigger("post_execute")  # figures are shown here
         shell.events.trigger("post_run_cell", result)
+        return result.success
 
     def _exit(self, *_, **__):
         self.shell.ask_exit()

@@ -172,7 +172,7 @@ def _notebook(libc, executor, rules, connection):
         sys.path.insert(0, settings["folder"])
         executor.start(settings["files"])
         grader.send({"ready": True})
-        actions = {"run_cell": executor.run_cell, "call": executor.call}
+        actions = {"prepare": executor.prepare, "run_cell": executor.run_cell, "call": executor.call}
         while True:
             request = grader.receive()
             reply = actions[request["action"]](*request["arguments"])

@@ -50,6 +50,7 @@ class CellRun:
     outputs: list = field(default_factory=list)
     execution_count: int | None = None
     ended: bool = False  # the cell called exit() or quit()
+    failed: bool = False  # it raised an error
 
 
 class ForkServer:
@@ -208,13 +209,19 @@ class NotebookProcess:
         """Whether the notebook's time is over."""
         return time.monotonic() >= self.deadline
 
+    def prepare(self, source):
+        """Run lines of the grader's own before the first cell; raises Ended as `run_cell`."""
+        self._request("prepare", [source], self.limits.cell)
+
     def run_cell(self, source):
         """Run a cell; raises Ended when its process had to be stopped or died."""
         reply = self._request("run_cell", [source], self.limits.cell)
         try:
             outputs = [dict(output) for output in reply["outputs"]]
             count = reply["execution_count"]
-            return CellRun(outputs, count if type(count) is int else None, reply["ended"] is True)
+            return CellRun(
+                outputs, count if type(count) is int else None, reply["ended"] is True, reply["failed"] is True
+            )
         except (KeyError, TypeError, ValueError) as error:
             raise self._ended("killed", "its process gave an answer that the grader's own code never gives") from error
 
