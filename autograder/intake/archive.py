@@ -16,7 +16,7 @@ import zlib
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
-from .restore import LARGEST
+from .reading import LARGEST
 
 IS_UTF8, IS_ENCRYPTED = 1 << 11, 1  # general purpose flags
 UNICODE_PATH = 0x7075  # the extra field with an entry's name in UTF-8
@@ -34,7 +34,7 @@ class Bounds:
 
     entries: int = 1_000
     one: int = LARGEST
-    all: int = 5 * LARGEST
+    all: int = 2 * LARGEST
     depth: int = 20
     name: int = 255  # what file systems take
     ratio: int = 200
@@ -62,9 +62,9 @@ class Archive:
         except Refused:
             file.close()
             raise Refused(f"it lists too many files; at most {bounds.entries} are taken") from None
-        except (zipfile.BadZipFile, struct.error, ValueError, OverflowError, NotImplementedError, EOFError) as error:
+        except (zipfile.BadZipFile, struct.error, ValueError, OverflowError, NotImplementedError, EOFError):
             file.close()
-            raise Refused(f"it is no zip file, or a damaged one ({error})") from None
+            raise Refused("it is no zip file, or a damaged one; it has to be packed or downloaded again") from None
         self._file = file
         if len(self._zip.infolist()) > bounds.entries:
             self.close()
@@ -124,8 +124,8 @@ class Archive:
         try:
             with self._zip.open(info) as file:
                 content = file.read(min(bounds.one, self.room) + 1)
-        except (zipfile.BadZipFile, zlib.error, struct.error, ValueError, NotImplementedError, EOFError) as error:
-            raise Refused(f"it is damaged ({error})") from None
+        except (zipfile.BadZipFile, zlib.error, struct.error, ValueError, NotImplementedError, EOFError):
+            raise Refused("it is damaged") from None
         if len(content) > bounds.one:
             raise Refused(f"it is larger than {bounds.one / 1e6:g} MB")
         if len(content) > self.room:
