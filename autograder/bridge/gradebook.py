@@ -4,6 +4,7 @@ The marks are those that nbgrader's own SaveAutoGrades would record from the sam
 instead of cell by cell.
 """
 
+import json
 import logging
 import shutil
 import sqlite3
@@ -29,6 +30,7 @@ from sqlalchemy.exc import DatabaseError, OperationalError
 from ..course import ASSIGNMENT, CourseError
 from ..files import replace
 from ..grading.marks import CellGrade, NotebookGrades
+from ..grading.records import ALONE
 from ..intake.submission import TIMESTAMP
 from . import registration
 from .nbgrader_api import db_url, settings
@@ -148,6 +150,8 @@ class Writer:
         folder = self.course.autograded(graded.student)
         folder.mkdir(parents=True, exist_ok=True)
         files = {f"{name}.ipynb": text for name, text in graded.notebooks.items()} | graded.receipts
+        if graded.record:
+            files[ALONE] = json.dumps(graded.record)
         for stale in {path.name for path in folder.iterdir()} - set(files):
             path = folder / stale
             shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()

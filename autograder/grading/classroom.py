@@ -7,7 +7,7 @@ from concurrent.futures import FIRST_COMPLETED, wait
 from concurrent.futures.process import BrokenProcessPool
 
 from ..intake.submission import submission_of
-from .records import recorded
+from .records import recorded, recorded_alone
 from .workers import Processes
 
 
@@ -74,8 +74,14 @@ def _words(error):
 def _unchanged(course, submission, run):
     """Whether the same files were graded under the same specification before."""
     records = recorded(course, submission.student)
+    alone = None if records else recorded_alone(course, submission.student)
     handed_in = {name for name in run.released if f"{name}.ipynb" in submission.files}
-    return set(records) == handed_in and all(
-        record.get("submission") == submission.digest and record.get("specification") == run.digest
-        for record in records.values()
+    found = [*records.values(), *([alone] if alone else [])]
+    return (
+        bool(found)
+        and set(records) == handed_in
+        and all(
+            record.get("submission") == submission.digest and record.get("specification") == run.digest
+            for record in found
+        )
     )

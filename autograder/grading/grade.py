@@ -58,6 +58,7 @@ class Graded:
     marks: dict[str, "Marks"] = field(default_factory=dict)  # {notebook name: Marks}
     problems: list[str] = field(default_factory=list)
     receipts: dict[str, str] = field(default_factory=dict)  # {file name: text}, see submission.receipts
+    record: dict = field(default_factory=dict)  # of the submission, where there is no notebook that could hold it
 
 
 def grading_run(
@@ -99,7 +100,19 @@ def grade_submission(submission: Submission, run: GradingRun) -> Graded:
             graded.notebooks[name] = nbformat.v4.writes(intake.notebook) + "\n"
             graded.marks[name] = marks(intake.notebook)
             graded.problems += intake.problems
+    if not graded.notebooks:
+        graded.record = {"problems": graded.problems, **_grading(submission, run)}
     return graded
+
+
+def _grading(submission, run):
+    """What a record says of its grading, which also tells whether it need be done again."""
+    return {
+        "seed": run.seed,
+        "graded": datetime.now(UTC).isoformat(timespec="seconds"),
+        "submission": submission.digest,
+        "specification": run.digest,
+    }
 
 
 def grade_notebook(
@@ -116,10 +129,7 @@ def grade_notebook(
             "verdicts": {name: told(verdict) for name, verdict in verdicts.items()},
             "examples": examples,
             "problems": [*submission.problems, *intake.problems],
-            "seed": run.seed,
-            "graded": datetime.now(UTC).isoformat(timespec="seconds"),
-            "submission": submission.digest,
-            "specification": run.digest,
+            **_grading(submission, run),
         }
     )
     return verdicts

@@ -1,11 +1,13 @@
 """`python3 -m autograder check`: one student's files, without submitted/ or a gradebook."""
 
 import re
+from pathlib import Path
 
 from transform_lab.judging import panel
 from transform_lab.judging.verdict import Verdict
 
 from ..intake.restore import restore
+from ..intake.sorting import sort
 from ..intake.submission import Submission, read, submission_of
 from .grade import grade_notebook, grading_run, new_seed
 from .judge import rows
@@ -45,28 +47,30 @@ def check_files(course, paths, seed=None, isolated=True):
 
 def _submission(course, paths):
     """(Submission of these files and the Python files beside the first, names of its notebooks, [what is refused])"""
-    refused, taken, files, problems = [], {}, {}, []
+    refused, files = [], {}
     for path in paths:
         if path.is_dir():
             refused.append(f"{path}: a folder is checked by itself; give it alone, or name the notebooks in it.")
-        elif path.stem not in course.notebooks:
-            names = ", ".join(f"{name}.ipynb" for name in course.notebooks)
-            refused.append(f"{path}: no notebook of this assignment has that name; there are {names}.")
-        elif path.stem in taken:
-            refused.append(f"{path}: left out; {taken[path.stem]} is the same notebook.")
+            continue
+        content, problem = read(path)
+        if problem:
+            refused.append(f"{path}: {problem}." if path.is_file() else f"{path}: there is no such file.")
         else:
-            content, problem = read(path)
-            if problem:
-                refused.append(f"{path}: {problem}." if path.is_file() else f"{path}: there is no such file.")
-            else:
-                taken[path.stem], files[f"{path.stem}.ipynb"] = path, content
-    for path in sorted(next(iter(taken.values())).parent.glob("*.py")) if taken else ():
+            files[str(path)] = content
+    taken = sort(files, course.notebooks)
+    for path in files.keys() - set(taken.sources.values()):
+        lines = [line for line in taken.problems if line.startswith(f"{path}: ")]
+        refused += lines or [f"{path}: it is no notebook of this assignment; there are {', '.join(course.notebooks)}."]
+    problems = [line for line in taken.problems if line not in refused]
+    beside = {}
+    for path in sorted(Path(next(iter(taken.sources.values()))).parent.glob("*.py")) if taken.sources else ():
         content, problem = read(path)
         if problem:
             problems.append(f"{path.name}: {problem}.")
         else:
-            files[path.name] = content
-    return Submission("", files, tuple(problems)), list(taken), refused
+            beside[path.name] = content
+    notebooks = {f"{name}.ipynb": content for name, content in taken.notebooks.items()}
+    return Submission("", notebooks | taken.helpers | beside, tuple(problems)), list(taken.notebooks), refused
 
 
 def points(found):

@@ -17,6 +17,7 @@ from ..released import Released
 from .judge import Row
 
 RECORD = "transform_lab"  # the entry of an autograded notebook's metadata that holds its verdicts
+ALONE = "submission.json"  # beside where the notebooks would be: the record of a submission that has none
 
 
 def recorded(course: Course, student: str) -> dict[str, dict]:
@@ -36,6 +37,17 @@ def recorded(course: Course, student: str) -> dict[str, dict]:
         except (OSError, ValueError, KeyError, TypeError):
             continue
     return found
+
+
+def recorded_alone(course: Course, student: str) -> dict | None:
+    """The record of a submission without any notebook: its "problems", and as in those of notebooks when it was graded."""
+    try:
+        record = json.loads((course.autograded(student) / ALONE).read_text(encoding="utf-8"))
+        datetime.fromisoformat(record["graded"])
+        record["problems"] = [str(problem) for problem in record["problems"]]
+        return record
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
 
 
 def told(verdict):

@@ -5,7 +5,6 @@ https://gradescope-autograders.readthedocs.io/en/latest/specs/: whatever happens
 """
 
 import json
-import os
 import sys
 import traceback
 from pathlib import Path
@@ -16,7 +15,6 @@ from .. import sandbox
 from ..course import Course
 from ..files import replace
 from ..grading.one_student import check_files
-from ..grading.records import missing
 from ..untrusted import printable
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -42,13 +40,9 @@ def grade(course, folder):
     if problem:
         print(problem, file=sys.stderr)
         return {"score": 0.0, "output": NOT_GRADED}
-    paths, notes = notebooks(folder, course.notebooks)
-    found, refused, mended = check_files(course, paths, isolated=isolated)
+    found, _, notes = check_files(course, [folder], isolated=isolated)
     entries = {row.exercise: _entry(row, panel.text(verdict, numbers=False)) for row, verdict in found}
-    for name, released in course.notebooks.items():
-        for row in missing(released):
-            entries.setdefault(row.exercise, _entry(row, f"There is no {name}.ipynb to grade."))
-    notes += [line.replace(f"{folder}{os.sep}", "") for line in refused] + mended + by_hand(course)
+    notes += by_hand(course)
     tests = [entries[exercise] for released in course.notebooks.values() for exercise in released.points]
     return {
         "score": round(sum(test["score"] for test in tests), 2),
@@ -68,21 +62,6 @@ def protection(root):
     return "user", also and f"{refused}\n{also}"
 
 
-def notebooks(folder, names):
-    """([the notebooks of these names in a submission], [what to say of its files]).
-
-    They lie in the folder itself or, when a folder was zipped, in one below it: the first that has any.
-    """
-    for here, folders, files in os.walk(folder):  # follows no link
-        folders[:] = sorted(name for name in folders if not name.startswith((".", "__MACOSX")))
-        found = [f"{name}.ipynb" for name in names if f"{name}.ipynb" in files]
-        if found:
-            others = sorted(name for name in files if name.endswith(".ipynb") and name not in found)
-            return [Path(here, name) for name in found], [_unknown(name, names) for name in others]
-    wanted = ", ".join(f"{name}.ipynb" for name in names)
-    return [], [f"No notebook of this assignment was found. Hand them in under their own names: {wanted}."]
-
-
 def by_hand(course):
     """What to say of the questions that have points and no test."""
     points = [most for released in course.notebooks.values() for most in released.questions.values()]
@@ -90,11 +69,6 @@ def by_hand(course):
         return []
     which, are = ("written question", "is") if len(points) == 1 else (f"{len(points)} written questions", "are")
     return [f"The {which} ({sum(points):g} points) {are} graded by hand and not counted here."]
-
-
-def _unknown(name, names):
-    wanted = ", ".join(f"{released}.ipynb" for released in names)
-    return f"{name}: no notebook of this assignment has that name, so it was not graded; there are {wanted}."
 
 
 def _entry(row, text):

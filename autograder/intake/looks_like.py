@@ -79,7 +79,7 @@ def what_it_is(content: bytes, text: str, found: object) -> str:
         return (
             f"it is a notebook written as text (Markdown); turn it into one with `jupytext --to notebook`, or {AGAIN}"
         )
-    if "\0" in text or text.count("\ufffd") > len(text) / 20:
+    if len(re.findall("[\x00-\x08\x0e-\x1a\ufffd]", text)) > len(text) / 50:
         return f"it is no text, so it cannot be a notebook; {AGAIN}"
     return f"it is a text, and no notebook; {AGAIN}"
 

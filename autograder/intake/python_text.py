@@ -4,11 +4,15 @@ import ast
 import re
 import textwrap
 import warnings
+from functools import lru_cache
 
 RUNS_ITS_BODY = r"\s*%%(time|timeit|capture|prun)\b.*\n"  # cell magics of IPython's under which Python stands
 # Lines of IPython's own: magics, commands, questions; and what they give a name to.
 OWN_LINE = re.compile(r"^([ \t]*)(?:[%!?].*|[\w.]+\?{1,2}[ \t]*)$", re.MULTILINE)
 OWN_VALUE = re.compile(r"^([ \t]*[\w, ]+=)[ \t]*[%!].*$", re.MULTILINE)
+
+
+REMEMBERED = 4_000  # texts: those of the course's own cells come back in every student's notebook
 
 
 def parsed(source: str) -> ast.Module | None:
@@ -25,13 +29,14 @@ def parsed(source: str) -> ast.Module | None:
     return None
 
 
-def binds(source: str) -> set[str]:
+@lru_cache(REMEMBERED)
+def binds(source: str) -> frozenset[str]:
     """The names that a cell gives a meaning at its top level: functions, classes, imports, variables."""
     tree = parsed(source)
     if tree is None:  # with a slip in it: what can be seen without parsing
         found = set(re.findall(r"^(?:async\s+)?(?:def|class)\s+(\w+)", source, re.MULTILINE))
         found |= set(re.findall(r"^(\w+)\s*=[^=]", source, re.MULTILINE))
-        return found | set(re.findall(r"^(?:import|from)\s.*?(\w+)\s*$", source, re.MULTILINE))
+        return frozenset(found | set(re.findall(r"^(?:import|from)\s.*?(\w+)\s*$", source, re.MULTILINE)))
     found, waiting = set(), list(tree.body)
     while waiting:
         node = waiting.pop()
@@ -44,7 +49,7 @@ def binds(source: str) -> set[str]:
             found.add(node.id)
         if not isinstance(node, (ast.Lambda, ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)):
             waiting += ast.iter_child_nodes(node)
-    return found
+    return frozenset(found)
 
 
 def defines(source: str) -> list[str]:
@@ -53,12 +58,13 @@ def defines(source: str) -> list[str]:
     return [node.name for node in tree.body if isinstance(node, ast.FunctionDef)] if tree else []
 
 
-def checks(source: str) -> tuple[list[str], bool]:
-    """([the names that a cell calls `check` with], whether it does nothing else than one such call)."""
-    tree = parsed(source)
+@lru_cache(REMEMBERED)
+def checks(source: str) -> tuple[tuple[str, ...], bool]:
+    """((the names that a cell calls `check` with), whether it does nothing else than one such call)."""
+    tree = parsed(source) if "check" in source else None
     if tree is None:
-        return [], False
-    names = [name for name in map(_checked, ast.walk(tree)) if name]
+        return (), False
+    names = tuple(name for name in map(_checked, ast.walk(tree)) if name)
     alone = len(names) == len(tree.body) == 1 and isinstance(tree.body[0], ast.Expr) and _checked(tree.body[0].value)
     return names, bool(alone)
 

@@ -115,11 +115,11 @@ def _cell(raw):
     )
 
 
-def _text(source):
+def _text(source, between="\n"):
     """A cell's source, which is text or a list of lines; some tools leave the ends of the lines out."""
     if isinstance(source, list):
         lines = [str(line) for line in source if isinstance(line, (str, int, float))]
-        ends = "" if any(line.endswith(("\n", "\r")) for line in lines) else "\n"
+        ends = "" if any(line.endswith(("\n", "\r")) for line in lines) else between
         source = ends.join(lines)
     elif not isinstance(source, (str, int, float)):
         source = ""
@@ -131,7 +131,7 @@ def _attachments(raw):
     found = {}
     for name, bundle in raw.items() if isinstance(raw, dict) else ():
         bundle = bundle.items() if isinstance(bundle, dict) else ()
-        kept = {printable(kind): _text(data) for kind, data in bundle if isinstance(data, (str, list))}
+        kept = {printable(kind): _text(data, "") for kind, data in bundle if isinstance(data, (str, list))}
         if any(kept.values()):
             found[printable(name)] = kept
     return found

@@ -84,17 +84,17 @@ class Restoration:
 
     def notebook(self) -> nbformat.NotebookNode:
         """What became of the file: a valid notebook, with the released metadata around each cell."""
-        notebook = nbformat.v4.new_notebook(metadata=copy.deepcopy(self.released.notebook.metadata))
+        metadata = {name: cell.metadata for name, cell in self.released.cells.items()}
+        made: list[dict] = []
         for position, cell in enumerate(self.cells):
-            new = nbformat.v4.new_code_cell if cell.kind == "code" else nbformat.v4.new_markdown_cell
-            made = new(cell.source, id=f"cell-{position}")
-            if cell.attachments:
-                made.attachments = nbformat.from_dict(cell.attachments)
-            if cell in self.name:
-                original = self.released.cells[self.name[cell]]
-                made.metadata = copy.deepcopy(original.metadata)
-            notebook.cells.append(made)
-        notebook.nbformat_minor = 5
+            own = metadata[self.name[cell]] if cell in self.name else {}
+            made.append({"cell_type": cell.kind, "id": f"cell-{position}", "metadata": own, "source": cell.source})
+            if cell.kind == "code":
+                made[-1] |= {"outputs": [], "execution_count": None}
+            elif cell.attachments:
+                made[-1]["attachments"] = cell.attachments
+        around = {"metadata": self.released.notebook.metadata, "nbformat": 4, "nbformat_minor": 5}
+        notebook = nbformat.from_dict({"cells": made, **around})  # a copy, all the way down
         nbformat.validate(notebook)
         return notebook
 
@@ -150,6 +150,7 @@ class Restoration:
                 if others:
                     self._drop(chosen)  # it would define the function once more, and undo the student's
                     self.name[others[-1]] = name
+                    self.said.append(f"the function of {name} stands in another cell, which was graded")
                     self._set_kind(others[-1], name)
                 elif writers := self._writers(solves):  # in another solution's cell
                     if chosen is None:
@@ -157,6 +158,7 @@ class Restoration:
                         self.cells.insert(self.cells.index(writers[0]), chosen)
                         self.name[chosen] = name
                     chosen.source = ELSEWHERE
+                    self.said.append(f"the function of {name} stands in another exercise's cell, and was graded there")
             else:
                 self._set_kind(chosen, name)
 
@@ -185,7 +187,7 @@ class Restoration:
         return [
             cell
             for cell in self.cells
-            if cell.kind == "code" and binds(cell.source) & set(exercises) and _plain(cell.source) not in given
+            if cell.kind == "code" and self._defines(cell, exercises) and _plain(cell.source) not in given
         ]
 
     def _as_text(self, exercises):
@@ -195,9 +197,12 @@ class Restoration:
             for cell in self.cells
             if cell.kind == "markdown"
             and cell not in self.name
+            and self._defines(cell, exercises)
             and parsed(cell.source) is not None
-            and binds(cell.source) & set(exercises)
         ]
+
+    def _defines(self, cell, exercises):
+        return any(name in cell.source for name in exercises) and not binds(cell.source).isdisjoint(exercises)
 
     def _set_kind(self, cell, name):
         kind = self.released.cells[name].cell_type
@@ -231,7 +236,12 @@ class Restoration:
             places = solutions + tried or writers
             if places or writers:
                 self.cells.insert(max(map(self.cells.index, places)) + 1, check)
-                self.said.append(f"the test cell of {name} is missing or changed; it was put back after its solution")
+                said = (
+                    "had been changed; it was put back behind it"
+                    if tried
+                    else "is missing; it was put back behind its solution"
+                )
+                self.said.append(f"the test cell of {name} {said}")
             else:
                 self.cells.append(check)
                 self.statuses[name] = "missing"
@@ -246,9 +256,10 @@ class Restoration:
         for other in found:
             if other is not check:
                 del self.name[other]
-        if not self._is_given(check, name) or check.kind != "code":
+        if not checks(check.source)[1]:
             self.said.append(f"the locked cell {name} had been changed; its text was set back")
-        check.source, check.kind = self.released.cells[name].source, "code"
+        self._set_kind(check, name)
+        check.source = self.released.cells[name].source
 
     def _move_check(self, name, writers, solutions):
         """Move a test cell that stands before all cells that define its function, or before the solution that counts."""

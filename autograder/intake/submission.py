@@ -15,12 +15,12 @@ import dateutil.parser
 
 from ..course import Course
 from ..untrusted import printable
+from .naming import is_notebook
 from .reading import LARGEST
+from .sorting import LARGEST_FILES, LARGEST_NOTEBOOKS, MOST_FILES, MOST_NOTEBOOKS, PACKAGE, Room, sort
 
 TIMESTAMP, SECRET = "timestamp.txt", "submission_secret.txt"  # written by `nbgrader submit`
-MOST_FILES = 200  # handed in besides the notebooks
 NOT_HANDED_IN = "{}: not handed in; 0 points."
-LARGEST_FILES = 4_000_000  # bytes, all of them together
 
 
 @dataclass(frozen=True)
@@ -39,8 +39,8 @@ class Submission:
 
     @property
     def digest(self) -> str:
-        """Changes when anything of the submission changes."""
-        total = hashlib.sha256()
+        """Changes when anything of the submission changes, the files' names included."""
+        total = hashlib.sha256("\n".join(self.problems).encode())
         for path, content in sorted(self.files.items()):
             total.update(f"{path}\0{len(content)}\0".encode() + content)
         return total.hexdigest()
@@ -49,39 +49,42 @@ class Submission:
 def submission_of(course: Course, student: str, folder: Path | None = None) -> Submission:
     """The Submission in a folder (a path; None for submitted/STUDENT)."""
     folder = folder or course.submitted(student)
-    files: dict[str, bytes] = {}
     problems: list[str] = []
-    for name in (f"{name}.ipynb" for name in course.notebooks):
-        if not os.path.lexists(folder / name):
-            problems.append(NOT_HANDED_IN.format(name))
-            continue
-        content, problem = read(folder / name)
-        files[name] = content or b""  # where nothing can be read, the intake calls the notebook unreadable
-        if problem:
-            problems.append(f"{name}: {problem}.")
-    notebooks, room = len(files), LARGEST_FILES
+    sorted_files = sort(_files(folder, course, problems), course.notebooks)
+    files = {f"{name}.ipynb": content for name, content in sorted_files.notebooks.items()}
+    absent = [NOT_HANDED_IN.format(f"{name}.ipynb") for name in course.notebooks if name not in sorted_files.notebooks]
+    known_by, odd = receipts(folder)
+    problems += [*sorted_files.problems, *absent, *([odd] if odd else [])]
+    return Submission(student, files | sorted_files.helpers, tuple(problems), known_by)
+
+
+def _files(folder, course, problems):
+    """{path: bytes} of what is in a folder, within bounds; what is left out is said."""
+    files: dict[str, bytes] = {}
     folders: set[str] = set()
-    for path in _paths(folder, problems):
+    rooms = {True: Room(MOST_NOTEBOOKS, LARGEST_NOTEBOOKS), False: Room(MOST_FILES, LARGEST_FILES)}
+    for path in _paths(folder, course, problems):
         relative = PurePosixPath(printable(path.relative_to(folder).as_posix()))
         name, above = str(relative), {str(parent) for parent in relative.parents}
-        if name.removesuffix(".ipynb") in course.notebooks:
+        large = is_notebook(name) or name.lower().endswith(".zip")
+        room = rooms[large]
+        content, problem = read(path, most=LARGEST if large else LARGEST_FILES)
+        if problem and relative.name == f"{relative.stem}.ipynb" and relative.stem in course.notebooks:
+            problems.append(f"{name}: {problem}.")
+            files[name] = b""  # the intake calls the notebook unreadable
             continue
-        content, problem = read(path)
-        room -= len(content or b"")
-        if len(files) - notebooks == MOST_FILES or room < 0:
+        if not problem and not room.takes(content):
             problem = f"left out; besides notebooks, {MOST_FILES} files of {LARGEST_FILES / 1e6:g} MB in all are taken"
-        elif name.endswith(".ipynb"):
-            wanted = ", ".join(f"{released}.ipynb" for released in course.notebooks)
-            problem = f"no notebook of this assignment has that name; rename it to one of {wanted} and grade again"
+            if large:
+                problem = f"left out; {MOST_NOTEBOOKS} notebooks of {LARGEST_NOTEBOOKS / 1e6:g} MB in all are taken"
         elif name in files or name in folders or above & set(files):
             problem = "left out; another file has the same name once what cannot be printed is replaced"
         if problem:
             problems.append(f"{name}: {problem}.")
         else:
-            files[name] = content or b""
+            files[name] = content
             folders |= above
-    known_by, problem = receipts(folder)
-    return Submission(student, files, tuple(problems + [problem] if problem else problems), known_by)
+    return files
 
 
 def receipts(folder: Path) -> tuple[dict[str, str], str | None]:
@@ -104,30 +107,32 @@ def receipts(folder: Path) -> tuple[dict[str, str], str | None]:
     return texts, problem
 
 
-def _paths(folder, problems):
+def _paths(folder, course, problems):
     """What is in a folder and those below it, links included; hidden files, caches and the students' package are not.
 
-    (They are nobody's work; the grader uses the course's own package.)
+    The notebooks that are called as released come first: nothing else takes their room.
     """
 
     def said(error):
         name = printable(os.path.relpath(error.filename, folder))
         problems.append(f"{name if len(name) < 200 else name[:200] + '…'}: left out; {error.strerror}.")
 
+    first = {f"{name}.ipynb" for name in course.notebooks}
+    yield from (folder / name for name in sorted(first) if os.path.lexists(folder / name))
     for here, folders, names in os.walk(folder, onerror=said):
-        ignored = {name for name in folders + names if name.startswith(".") or name == "__pycache__"}
+        ignored = {name for name in folders + names if name.startswith(".") or name in ("__pycache__", PACKAGE)}
         if Path(here) == folder:
-            ignored.add("transform_lab")
+            ignored |= first
         links = [name for name in folders if os.path.islink(os.path.join(here, name))]
         folders[:] = sorted(set(folders) - ignored)
         for name in sorted({*names, *links} - ignored):
             yield Path(here, name)
 
 
-def read(path: Path | str, folder: int | None = None) -> tuple[bytes | None, str | None]:
+def read(path: Path | str, folder: int | None = None, most: int = LARGEST) -> tuple[bytes | None, str | None]:
     """(the bytes of a regular file or None, what is wrong with it or None); follows no link, waits for nobody.
 
-    folder: the descriptor of the open folder that `path` is relative to
+    folder: the descriptor of the open folder that `path` is relative to; most: bytes, of a larger file one more is read
     """
     try:
         descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK, dir_fd=folder)
@@ -139,6 +144,6 @@ def read(path: Path | str, folder: int | None = None) -> tuple[bytes | None, str
         if not stat.S_ISREG(os.fstat(descriptor).st_mode):
             return None, "left out; it is no regular file"
         with open(descriptor, "rb", closefd=False) as file:
-            return file.read(LARGEST + 1), None
+            return file.read(most + 1), None
     finally:
         os.close(descriptor)

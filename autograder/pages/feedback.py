@@ -17,8 +17,9 @@ from ..course import ASSIGNMENT, CourseError
 from ..files import replace
 from ..grading import digests
 from ..grading.marks import CellGrade, NotebookGrades
-from ..grading.records import recorded, verdicts
+from ..grading.records import recorded, recorded_alone, verdicts
 from ..grading.workers import end_with_parent
+from ..intake.submission import NOT_HANDED_IN
 from ..released import without_points
 from .markdown import heading
 from .rendering import environment
@@ -33,7 +34,7 @@ def is_complete(course, student, grades):
     """
     pages = [course.feedback(student) / f"{path.stem}.html" for path in course.autograded(student).glob("*.ipynb")]
     summary = course.feedback(student) / SUMMARY
-    if not pages:
+    if not pages and not recorded_alone(course, student):
         return True
     told = _digest(course, student, grades).encode()
     return all(map(_is_whole, [*pages, summary])) and told in summary.read_bytes()
@@ -52,7 +53,12 @@ def _is_whole(page):
 def _digest(course, student, grades):
     """Stands in the summary for the grades and the grading that it was made from, and for what made it."""
     graded = [(name, record["seed"], record["graded"]) for name, record in recorded(course, student).items()]
-    told = digests.of_pages(course), graded, {name: asdict(of) for name, of in grades.items()}
+    told = (
+        digests.of_pages(course),
+        graded,
+        _problems(course, student),
+        {name: asdict(of) for name, of in grades.items()},
+    )
     return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
 
 
@@ -67,13 +73,24 @@ def generate(course, grades, jobs):
 
 def _one(course, student, grades):
     try:
-        nbgrader_api.call(course, "generate_feedback", ASSIGNMENT, student)
+        if any(course.autograded(student).glob("*.ipynb")):
+            nbgrader_api.call(course, "generate_feedback", ASSIGNMENT, student)
+        course.feedback(student).mkdir(parents=True, exist_ok=True)
         replace(course.feedback(student) / SUMMARY, summary(course, student, grades))
     except CourseError as error:
         return str(error)
     except Exception as error:  # whatever it is, the others' pages and the class report are not to be lost
         return f"{type(error).__name__}: {error}"
     return None
+
+
+def _problems(course, student):
+    """What was odd about a student's files, but for what is not among them."""
+    records = recorded(course, student).values() or filter(None, [recorded_alone(course, student)])
+    absent = {NOT_HANDED_IN.format(f"{name}.ipynb") for name in course.notebooks}
+    return [
+        line for line in dict.fromkeys(line for record in records for line in record["problems"]) if line not in absent
+    ]
 
 
 def summary(course, student, grades):
@@ -92,6 +109,7 @@ def summary(course, student, grades):
         most=sum(notebook["most"] for notebook in notebooks),
         waiting=sum(cell["waiting"] for notebook in notebooks for cell in notebook["questions"]),
         begin=next(wrong, None),
+        problems=_problems(course, student),
         digest=_digest(course, student, grades),
     )
 
@@ -103,6 +121,7 @@ def _notebook(released, grades, record):
     cells = {name: _cell(name, most, released, grades, found.get(name), page) for name, most in asked.items()}
     return {
         "title": released.title,
+        "file": f"{released.name}.ipynb",
         "page": page,
         "earned": max(0.0, sum(cell["earned"] for cell in cells.values()) - grades.penalty),
         "most": sum(cell["most"] for cell in cells.values()),

@@ -13,7 +13,7 @@ from typing import NamedTuple
 from transform_lab.judging import panel
 from transform_lab.judging.status import STATUSES
 
-from ..grading.records import missing, recorded, verdicts
+from ..grading.records import missing, recorded, recorded_alone, verdicts
 from ..intake.submission import NOT_HANDED_IN
 
 MOST_BARS = 10  # of the distribution of points, besides the one for all points
@@ -67,6 +67,8 @@ def work(course, student):
         problems |= dict.fromkeys(record["problems"])
         graded = datetime.fromisoformat(record["graded"]).astimezone()
         found.runs[record["seed"]] = max(graded, found.runs.get(record["seed"], graded))
+    if not records and (alone := recorded_alone(course, student)):
+        problems |= dict.fromkeys(alone["problems"])
     said_elsewhere = {NOT_HANDED_IN.format(f"{name}.ipynb") for name in found.absent}
     found.problems = [problem for problem in problems if problem not in said_elsewhere]
     return found

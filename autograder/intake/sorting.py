@@ -1,0 +1,194 @@
+"""Which of the files that a student handed in is which notebook, whatever it is called and wherever it lies.
+
+A notebook is known by its cells first and by its name second (see naming.py). Zip files are unpacked where they lie. What was
+taken for what, and what was not, is said in words, each with what to do.
+"""
+
+import difflib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import PurePosixPath
+
+from ..released import Released
+from .archive import Refused, contents
+from .naming import by_name, has_work, is_notebook, meant
+from .reading import LARGEST, Unreadable, cells
+
+PACKAGE = "transform_lab"  # the students' package: nobody's work, and the grader uses the course's own
+PACKED = (".7z", ".rar", ".tar", ".gz", ".tgz", ".bz2", ".xz")
+MOST_NOTEBOOKS, LARGEST_NOTEBOOKS = 100, 2 * LARGEST  # that are looked into, under whatever name; bytes of all of them
+MOST_FILES, LARGEST_FILES = 200, 4_000_000  # handed in besides the notebooks; bytes of all of them
+
+
+@dataclass
+class Room:
+    """How many files more are taken, and how many bytes of them."""
+
+    files: int
+    bytes: int
+
+    def takes(self, content):
+        """Whether there is room for it, which it then takes."""
+        if self.files < 1 or self.bytes < len(content):
+            return False
+        self.files, self.bytes = self.files - 1, self.bytes - len(content)
+        return True
+
+
+@dataclass
+class Sorted:
+    """notebooks: {released name: bytes}; helpers: {path: bytes} of what these may import or read
+
+    sources: {released name: the path that it came under, or that of its zip file}; problems: sentences
+    """
+
+    notebooks: dict[str, bytes] = field(default_factory=dict)
+    helpers: dict[str, bytes] = field(default_factory=dict)
+    sources: dict[str, str] = field(default_factory=dict)
+    problems: list[str] = field(default_factory=list)
+
+
+@dataclass
+class Candidate:
+    """A file that may be a notebook of the assignment.
+
+    name: the released name that it goes by; exact: whether it has that name; numbers: of the copy, see naming.by_name
+    """
+
+    path: str
+    content: bytes
+    name: str
+    exact: bool
+    named: bool
+    numbers: tuple[int, ...]
+    work: bool
+
+    @property
+    def rank(self):
+        """Work counts before an exact name, and that before other names; of copies the last one does."""
+        depth = len(PurePosixPath(self.path).parts)
+        return self.work, self.exact, -depth, self.named, self.numbers, self.path
+
+
+def sort(files: Mapping[str, bytes], notebooks: Mapping[str, Released]) -> Sorted:
+    """Files as they were handed in, {path: bytes}, sorted by the released notebooks, {name: Released}."""
+    found = Sorted()
+    zips: dict[str, str] = {}
+    everything = _unpacked(files, zips, found.problems)
+    candidates: list[Candidate] = []
+    for path, content in everything.items():
+        if _may_be_notebook(path, content, notebooks):
+            if len(candidates) == MOST_NOTEBOOKS:
+                found.problems.append(f"{path}: left out; at most {MOST_NOTEBOOKS} notebooks are looked into.")
+            elif candidate := _candidate(path, content, notebooks, found.problems):
+                candidates.append(candidate)
+    chosen = _choose(candidates, notebooks, found)
+    found.sources = {name: zips.get(path, path) for name, path in chosen.items()}
+    root = _root(chosen.values())
+    if root and root not in {_folder(path) for path in zips}:
+        found.problems.append(f"{root}/: the notebooks were taken from this folder.")
+    for path, content in everything.items():
+        if path.lower().endswith(PACKED):
+            found.problems.append(f"{path}: it was not opened; hand in the files themselves, or a zip of them.")
+        elif not is_notebook(path):
+            found.helpers[path.removeprefix(f"{root}/") if root else path] = content
+            name = by_name(PurePosixPath(path).stem, notebooks)
+            if name and name[0] not in chosen and not _may_be_notebook(path, content, notebooks):
+                found.problems.append(f"{path}: it is not the notebook; hand in {name[0]}.ipynb itself.")
+    return found
+
+
+def _unpacked(files, zips, problems):
+    """The files, and in the place of each zip file what is in it; `zips` is told which file came out of which."""
+    everything = {path: content for path, content in files.items() if not _is_zip(path)}
+    for path, content in files.items():
+        if _is_zip(path):
+            try:
+                inside, odd = contents(content)
+            except Refused as refused:
+                problems.append(f"{path}: {refused}.")
+                continue
+            problems += [f"{path}: {problem}" for problem in odd]
+            taken = {name: entry for name, entry in inside.items() if PACKAGE not in PurePosixPath(name).parts}
+            problems.append(f"{path}: it was unpacked{'' if taken else ', and there is nothing in it'}.")
+            room = Room(MOST_FILES, LARGEST_FILES)
+            for name, entry in taken.items():
+                unpacked = str(PurePosixPath(path).parent / name)
+                if _is_zip(name):
+                    problems.append(f"{path}: {name}: a zip in a zip was not unpacked; hand in the files themselves.")
+                elif unpacked in everything:
+                    problems.append(f"{path}: {name}: left out; the file beside the zip was taken.")
+                elif not is_notebook(name) and not room.takes(entry):
+                    problems.append(
+                        f"{path}: {name}: left out; the files besides notebooks are too many, or too large."
+                    )
+                else:
+                    everything[unpacked], zips[unpacked] = entry, path
+    return everything
+
+
+def _is_zip(path):
+    return path.lower().endswith(".zip")
+
+
+def _may_be_notebook(path, content, notebooks):
+    """By its name; or by its name without the ending, when it looks like one inside."""
+    inside = content[:1_000_000].lstrip(b"\xef\xbb\xbf \t\r\n")
+    return is_notebook(path) or (
+        inside.startswith(b"{") and b'"cells"' in inside and by_name(PurePosixPath(path).stem, notebooks) is not None
+    )
+
+
+def _candidate(path, content, notebooks, problems):
+    """The Candidate that a file is, or None, and a problem that says why."""
+    filename = PurePosixPath(path).name
+    called, numbers = by_name(filename if is_notebook(filename) else PurePosixPath(path).stem, notebooks) or (None, ())
+    try:
+        found = cells(content)
+    except Unreadable as unreadable:
+        found, holds, why = [], None, str(unreadable)
+    else:
+        holds, why = meant(found, notebooks), "its cells are those of no notebook of this assignment"
+    if called and holds and called != holds and not meant(found, {called: notebooks[called]}):
+        problems.append(
+            f"{path}: not graded; it holds the cells of {holds}. If it is that notebook, call it {holds}.ipynb."
+        )
+        return None
+    name = called or holds
+    if name is None:
+        near = difflib.get_close_matches(filename, [f"{released}.ipynb" for released in notebooks], 1, 0.7)
+        wanted = near[0] if near else f"one of {', '.join(f'{released}.ipynb' for released in notebooks)}"
+        problems.append(
+            f"{path}: not graded; no notebook of this assignment has that name, and {why}. Call it {wanted}."
+        )
+        return None
+    work = has_work(found, notebooks[name])
+    return Candidate(path, content, name, filename == f"{name}.ipynb", bool(called), numbers, work)
+
+
+def _choose(candidates, notebooks, found):
+    """{released name: path} of the one file for each notebook; what becomes of the others is said."""
+    chosen = {}
+    for name in notebooks:
+        ranked = sorted((one for one in candidates if one.name == name), key=lambda one: one.rank, reverse=True)
+        if not ranked:
+            continue
+        best, *others = ranked
+        chosen[name], found.notebooks[name] = best.path, best.content
+        if not best.exact:
+            found.problems.append(f"{best.path}: it was taken for {name}.ipynb; that is what it should be called.")
+        for other in others:
+            if other.content != best.content:
+                found.problems.append(f"{other.path}: not graded; {best.path} is the same notebook and was graded.")
+    return chosen
+
+
+def _root(paths):
+    """The folder in which all of these files lie, "" where it is not one."""
+    folders = {_folder(path) for path in paths}
+    return folders.pop() if len(folders) == 1 else ""
+
+
+def _folder(path):
+    folder = str(PurePosixPath(path).parent)
+    return "" if folder == "." else folder
