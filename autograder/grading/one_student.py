@@ -36,7 +36,8 @@ def check_files(course, paths, seed=None, isolated=True):
         for name in wanted:
             released, content = course.notebooks[name], submission.files.get(f"{name}.ipynb")
             if content is None:
-                found += [(row, Verdict(row.exercise, row.status, says="Not handed in.")) for row in missing(released)]
+                says = f"There is no {name}.ipynb to grade."
+                found += [(row, Verdict(row.exercise, row.status, says=says)) for row in missing(released)]
                 continue
             intake = restore(content, released)
             verdicts = grade_notebook(intake, released, against, sandbox, submission)

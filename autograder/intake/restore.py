@@ -66,6 +66,7 @@ class Restoration:
         self.released, self.cells = released, list(found)
         self.name: dict[Cell, str] = {}
         self.said: list[str] = []
+        self.entries = any(cell.entry for cell in self.cells)  # where there are none, one line says so for all
         self.statuses: dict[str, str] = {}
         self.checks = list(released.points)
         self.answers = [name for name in released.questions if released.cells[name].metadata.nbgrader.solution]
@@ -104,7 +105,7 @@ class Restoration:
         """Name cells: by nbgrader's entry; a check's by its call; where the entry is lost, by their text or their place."""
         lost = [cell for cell in self.cells if self._recognise_by_entry(cell) and not cell.entry]
         lost += self._recognise_by_text()
-        if lost and not any(cell.entry for cell in self.cells):
+        if lost and not self.entries:
             self.said.append("nbgrader's data of all cells were lost; they were recognised by what stands in them")
         elif checks_of := [self.name[cell] for cell in lost if self.name[cell] in self.checks]:
             self.said.append(
@@ -150,7 +151,8 @@ class Restoration:
                 if others:
                     self._drop(chosen)  # it would define the function once more, and undo the student's
                     self.name[others[-1]] = name
-                    self.said.append(f"the function of {name} stands in another cell, which was graded")
+                    if self.entries:
+                        self.said.append(f"the function of {name} stands in another cell, which was graded")
                     self._set_kind(others[-1], name)
                 elif writers := self._writers(solves):  # in another solution's cell
                     if chosen is None:
@@ -300,7 +302,8 @@ class Restoration:
         words = [cell for cell in beside if cell.kind == "markdown"]
         if len(words) == 1:
             self.name[words[0]] = name
-            self.said.append(f"the cell {name} has lost its nbgrader data; it was recognised by its place")
+            if self.entries:
+                self.said.append(f"the cell {name} has lost its nbgrader data; it was recognised by its place")
             return
         cell = Cell("markdown", EMPTY if beside else ADDED)
         self.cells.insert(self._region(name)[1], cell)

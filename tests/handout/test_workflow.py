@@ -193,7 +193,10 @@ def test_a_students_repository_is_graded_and_told(kind, course, solved, sandboxe
             and told["output"]["title"] == f"{points('1_rotation'):g} of {points():g} points"
         )
         words = {row[1]: row[3] for row in rows}
-        assert words["chain"] == "The file could not be read." and words["waypoint"] == "Not handed in."
+        assert (
+            words["chain"] == "The file could not be read."
+            and words["waypoint"] == "There is no 5_pre_grasp.ipynb to grade."
+        )
         assert "&lt;script&gt;alert(1)&lt;/script&gt; `code` | [a](javascript:b) **bold**" in words["invert_transform"]
         assert "3&#95;chaining&#46;ipynb&#58; left out&#59; it is a link&#46;" in summary
 
