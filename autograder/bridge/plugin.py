@@ -19,7 +19,7 @@ from ..course import ASSIGNMENT, Course
 from ..grading.grade import grade_notebook, grading_run, new_seed
 from ..grading.records import RECORD
 from ..intake.restore import Intake, restore
-from ..intake.submission import read, submission_of
+from ..intake.submission import submission_of
 
 
 class Exporter(NotebookExporter):
@@ -50,9 +50,9 @@ class Exporter(NotebookExporter):
                 f"This course's grader knows the assignment {ASSIGNMENT} alone. Grade {path.parent.name} in a course folder "
                 "of its own, whose nbgrader_config.py does not name our classes."
             )
-        content, problem = read(path)
-        intake = restore(b"" if content is None else content, self.course.notebooks[path.stem])
-        for line in [problem] if problem else intake.problems:
+        submission = submission_of(self.course, path.parent.parent.name)  # which may hold a better file for this notebook
+        intake = restore(submission.files.get(path.name, b""), self.course.notebooks[path.stem])
+        for line in (*submission.problems, *intake.problems):
             self.log.warning(line)
         intake.notebook.metadata[RECORD] = {"statuses": intake.statuses, "problems": intake.problems}
         return self.from_file(io.StringIO(nbformat.writes(intake.notebook)), resources, **kwargs)

@@ -68,6 +68,7 @@ class Verdict:
     failing: PlainCase | None = None  # the first case with a wrong answer, or none
     answer: object = None  # the student's answer to it, decoded
     error: str = ""  # or the error that was raised instead
+    undefined: bool = False  # there is no function of that name
 
     def __post_init__(self):
         refuse_unknown(self.status)
@@ -115,7 +116,7 @@ def _unfinished(name: str, reply: Reply, case: PlainCase) -> Verdict:
         return Verdict(name, "error", done=False, says="Not done yet.")
     if reply.outcome == "undefined":
         hint = "Run the cell that defines it, and keep its name as it was."
-        return Verdict(name, "error", says=f"There is no function called {name}.", hint=hint)
+        return Verdict(name, "error", says=f"There is no function called {name}.", hint=hint, undefined=True)
     if reply.outcome == "timeout":
         why = f": {reply.error}" if reply.error else ""
         return Verdict(name, "timeout", says=f"Your function did not finish in time{why}.", hint=LOOP, failing=case)
