@@ -50,7 +50,9 @@ class Exporter(NotebookExporter):
                 f"This course's grader knows the assignment {ASSIGNMENT} alone. Grade {path.parent.name} in a course folder "
                 "of its own, whose nbgrader_config.py does not name our classes."
             )
-        submission = submission_of(self.course, path.parent.parent.name)  # which may hold a better file for this notebook
+        submission = submission_of(
+            self.course, path.parent.parent.name
+        )  # which may hold a better file for this notebook
         intake = restore(submission.files.get(path.name, b""), self.course.notebooks[path.stem])
         for line in (*submission.problems, *intake.problems):
             self.log.warning(line)

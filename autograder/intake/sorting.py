@@ -7,6 +7,7 @@ taken for what, and what was not, is said in words, each with what to do.
 import difflib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import PurePosixPath
 
 from ..released import Released
@@ -52,16 +53,26 @@ class Sorted:
 class Candidate:
     """A file that may be a notebook of the assignment.
 
-    name: the released name that it goes by; exact: whether it has that name; numbers: of the copy, see naming.by_name
+    released: the notebook that it goes by; named: whether its name says so; numbers: of the copy, see naming.by_name
     """
 
     path: str
     content: bytes
-    name: str
-    exact: bool
+    released: Released
     named: bool
     numbers: tuple[int, ...]
-    work: bool
+
+    @property
+    def exact(self):
+        return PurePosixPath(self.path).name == f"{self.released.name}.ipynb"
+
+    @cached_property
+    def work(self):
+        """Whether anything was written in it."""
+        try:
+            return has_work(cells(self.content), self.released)
+        except Unreadable:
+            return False
 
     @property
     def rank(self):
@@ -142,7 +153,11 @@ def _may_be_notebook(path, content, notebooks):
 def _candidate(path, content, notebooks, problems):
     """The Candidate that a file is, or None, and a problem that says why."""
     filename = PurePosixPath(path).name
-    called, numbers = by_name(filename if is_notebook(filename) else PurePosixPath(path).stem, notebooks) or (None, ())
+    called, numbers = by_name(filename if is_notebook(filename) else PurePosixPath(path).stem, notebooks) or ("", ())
+    if called and any(
+        f'"{name}"'.encode() in content for name in notebooks[called].cells
+    ):  # it need not be read for this
+        return Candidate(path, content, notebooks[called], True, numbers)
     try:
         found = cells(content)
     except Unreadable as unreadable:
@@ -162,22 +177,21 @@ def _candidate(path, content, notebooks, problems):
             f"{path}: not graded; no notebook of this assignment has that name, and {why}. Call it {wanted}."
         )
         return None
-    work = has_work(found, notebooks[name])
-    return Candidate(path, content, name, filename == f"{name}.ipynb", bool(called), numbers, work)
+    return Candidate(path, content, notebooks[name], bool(called), numbers)
 
 
 def _choose(candidates, notebooks, found):
     """{released name: path} of the one file for each notebook; what becomes of the others is said."""
     chosen = {}
     for name in notebooks:
-        ranked = sorted((one for one in candidates if one.name == name), key=lambda one: one.rank, reverse=True)
-        if not ranked:
+        found_for = [one for one in candidates if one.released.name == name]
+        if not found_for:
             continue
-        best, *others = ranked
+        best = found_for[0] if len(found_for) == 1 else max(found_for, key=lambda one: one.rank)
         chosen[name], found.notebooks[name] = best.path, best.content
         if not best.exact:
             found.problems.append(f"{best.path}: it was taken for {name}.ipynb; that is what it should be called.")
-        for other in others:
+        for other in found_for:
             if other.content != best.content:
                 found.problems.append(f"{other.path}: not graded; {best.path} is the same notebook and was graded.")
     return chosen
