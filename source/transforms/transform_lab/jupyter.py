@@ -16,3 +16,9 @@ def shell():
     from IPython import get_ipython
 
     return get_ipython()
+
+
+def names():
+    """{name: value} of what a notebook's cells, or a plain script, have defined."""
+    ipython = shell()
+    return vars(sys.modules["__main__"]) if ipython is None else ipython.user_ns

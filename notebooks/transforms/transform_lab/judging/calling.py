@@ -43,8 +43,11 @@ def one_line(error: BaseException) -> str:
     """An exception in one line of bounded length, with the student's own line in which it came up, if there is one."""
     where = ""
     for step in traceback.extract_tb(error.__traceback__):
-        if step.filename.startswith("<ipython-input") or "ipykernel_" in step.filename:
-            where = f", in your line {step.lineno}: `{_shortened(step.line, 80)}`"
+        line = step.line or ""
+        if not (step.filename.startswith("<ipython-input") or "ipykernel_" in step.filename):
+            continue
+        if not line.startswith("get_ipython()"):  # which is what a %magic was turned into
+            where = f", in your line {step.lineno}: `{_shortened(line, 80)}`"
     message = _shortened(f"{type(error).__name__}: {' '.join(str(error).split())}", 180).rstrip(".: ")
     return message + where
 

@@ -52,10 +52,14 @@ def text(verdict: Verdict, points: tuple[float, float] | None = None, numbers: b
 def html(verdict: Verdict, points: tuple[float, float] | None = None, numbers: bool = True) -> str:
     """The whole verdict in HTML; every text of the student's is escaped."""
     state = "right" if verdict.right else "wrong" if verdict.done else "waiting"
+    return headed(title(verdict), _sentences(verdict, points), state, example(verdict, numbers))
+
+
+def headed(headline, sentences, state, below=""):
+    """A headline with the mark of its state and sentences below it (text), then a piece of HTML; beside a bar."""
     mark = {"right": "✓", "wrong": "✗", "waiting": "…"}[state]
-    headline = f'<strong><span style="color:{COLOURS[state]}">{mark}</span> {escape(title(verdict))}</strong>'
-    sentences = [f"<div>{with_code(sentence)}</div>" for sentence in _sentences(verdict, points)]
-    return beside_a_bar([headline, *sentences, example(verdict, numbers)], state)
+    first = f'<strong><span style="color:{COLOURS[state]}">{mark}</span> {escape(headline)}</strong>'
+    return beside_a_bar([first, *(f"<div>{with_code(sentence)}</div>" for sentence in sentences), below], state)
 
 
 def beside_a_bar(pieces, state="wrong"):
