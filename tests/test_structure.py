@@ -14,6 +14,8 @@ ROOMS = {
         "tft lab_markers visualization_msgs",
         "viewing",
         "judging rospy animations plots",
+        "cells",
+        "outdated",
         "check mistakes",
         "summary",
     ],

@@ -284,11 +284,6 @@ def test_the_picture_follows_the_panel_and_a_right_answer_has_none(shell):
     assert all("<iframe" not in o.data.get("text/html", "") for o in right.outputs)
 
 
-def test_a_name_without_quotes(said):
-    with pytest.raises(CheckFailed, match="name in quotes first"):
-        check(to_pose, to_pose)
-
-
 def test_a_changed_argument_is_said_beside_what_else_is_wrong(said):
     def right_but_spoils(matrix):
         pose = to_pose(matrix)
@@ -308,14 +303,32 @@ def test_a_changed_argument_is_said_beside_what_else_is_wrong(said):
     assert verdict.credit == 0.0
 
 
-def test_the_call_instead_of_the_function(said):
-    with pytest.raises(CheckFailed, match=r'without parentheses: check\("make_transform", make_transform\)'):
-        check("make_transform", np.eye(4))
-
-
 def test_an_exercise_that_does_not_exist():
-    with pytest.raises(CheckFailed, match="no exercise called 'transform_to_poze'; there are rotation_about_z, "):
-        check("transform_to_poze", to_pose)
+    with pytest.raises(CheckFailed, match="no exercise called 'banana'; there are rotation_about_z, "):
+        check("banana", to_pose)
+
+
+def waypoint(object_pose, offset):
+    raise NotImplementedError
+
+
+@pytest.mark.parametrize(
+    "given, says",
+    [
+        ((waypoint,), "check takes the exercise's name in quotes first, then the function: "),
+        ((waypoint, waypoint), "check takes the exercise's name in quotes first, then the function: "),
+        ((waypoint, "waypoint"), "check takes the exercise's name in quotes first, then the function: "),
+        ((Pose(), "waypoint"), "check takes the exercise's name in quotes first, then the function: "),
+        (("waypoint",), "check takes, after the name, the function itself, without parentheses: "),
+        (("waypoint", Pose()), "check takes, after the name, the function itself, without parentheses: "),
+        (("waypoint", "waypoint"), "check takes, after the name, the function itself, without quotes: "),
+        (("waypiont", waypoint), "There is no exercise called 'waypiont'; did you mean "),
+    ],
+)
+def test_a_wrong_call_is_told_the_right_one(given, says):
+    with pytest.raises(CheckFailed) as failure:
+        check(*given)
+    assert str(failure.value).rstrip("?") == f'{says}check("waypoint", waypoint)'
 
 
 def test_the_key_is_missing(monkeypatch, tmp_path):

@@ -43,7 +43,7 @@ def test_each_exercise_is_looked_at_anew(shell):
     lines = text.splitlines()
     assert lines[0] == "rotation_about_z  2 of 2  all right"
     assert lines[1].startswith("rotation_from_axes  0 of 2  not right yet")
-    assert lines[2] == "is_rotation  0 of 2  its cell has not been run"
+    assert lines[2] == "is_rotation  0 of 2  run the cell that defines it, and keep its name"
     assert lines[3] == "same_rotation  0 of 1  not done yet"
     asked = len(ASKED["1_rotation"].points)
     so_far = f"1 of {asked} exercises, 2 of {points('1_rotation'):g} points"

@@ -2,13 +2,12 @@
 
 from html import escape
 
-from .check import notebook_data, verdict_on
+from .check import exercises, notebook_data, verdict_on
 from .judging import panel
-from .jupyter import being_graded, shell
+from .jupyter import being_graded, names, shell
+from .outdated import OUT_OF_DATE, missing, outdated
 
 __all__ = ["sum_up"]
-
-UNDEFINED = "its cell has not been run"
 
 
 def sum_up(notebook):
@@ -19,9 +18,8 @@ def sum_up(notebook):
     if being_graded():
         print("The grader sums up by itself.")
         return
-    exercises, questions = notebook_data(notebook)
-    names = vars(__import__("__main__")) if shell() is None else shell().user_ns
-    rows = [_row(name, exercise, names.get(name)) for name, exercise in exercises.items()]
+    asked, questions = notebook_data(notebook)
+    rows = [_row(name, exercise, names().get(name)) for name, exercise in asked.items()]
     right, earned, most = (sum(row[i] for row in rows) for i in ("right", "earned", "points"))
     sentences = [
         f"Right so far: {right} of {len(rows)} exercises, {earned:g} of {most:g} points. Grading uses other numbers.",
@@ -49,9 +47,13 @@ def _row(name, exercise, function):
         "right": False,
         "earned": 0.0,
         "points": exercise["points"],
-        "says": UNDEFINED,
+        "says": "it is no function",
     }
-    if callable(function):
+    if name not in names():
+        row["says"] = missing(name, exercises())
+    elif (old := outdated(name, function, exercises())) and old.certain:
+        row["says"] = f"{OUT_OF_DATE}: {old.happened}"
+    elif callable(function):
         verdict = verdict_on(name, exercise, function)
         row["mark"] = "✓" if verdict.right else "✗" if verdict.done else "…"
         row["right"], row["earned"] = verdict.right, round(verdict.credit * exercise["points"], 2)
@@ -63,7 +65,7 @@ def _table(rows, sentences):
     left = ' style="text-align:left"'
     cells = "".join(
         f"<tr><td>{row['mark']}</td><td{left}><code>{row['exercise']}</code></td>"
-        f"<td>{row['earned']:g} of {row['points']:g}</td><td{left}>{escape(row['says'])}</td></tr>"
+        f"<td>{row['earned']:g} of {row['points']:g}</td><td{left}>{panel.with_code(row['says'])}</td></tr>"
         for row in rows
     )
     head = f"<tr><th></th><th{left}>exercise</th><th>points</th><th{left}>what the check says</th></tr>"

@@ -11,10 +11,11 @@ On a robot, change the import lines and the rest of your code runs as it is:
 
 from . import rospy, tft, visualization_msgs
 from .animations import animate_approach, animate_chain, animate_inverse, animate_rotation
-from .check import check, once_done
+from .check import check, once_done, say_what_is_missing
 from .lab_markers import arrow_marker, axis_marker
 from .messages import ColorRGBA, Header, Marker, Point, Pose, PoseStamped, Quaternion, Vector3
 from .mistakes import show_mistake
+from .outdated import follow
 from .plots import plot_columns, plot_from_above, plot_quaternion
 from .summary import sum_up
 from .viewing.viewer import Viewer
@@ -46,3 +47,5 @@ __all__ = [
     "tft",
     "visualization_msgs",
 ]
+
+follow(say_what_is_missing)
