@@ -37,7 +37,8 @@ def binds(source: str) -> frozenset[str]:
         found = set(re.findall(r"^(?:async\s+)?(?:def|class)\s+(\w+)", source, re.MULTILINE))
         found |= set(re.findall(r"^(\w+)\s*=[^=]", source, re.MULTILINE))
         return frozenset(found | set(re.findall(r"^(?:import|from)\s.*?(\w+)\s*$", source, re.MULTILINE)))
-    found, waiting = set(), list(tree.body)
+    found: set[str] = set()
+    waiting: list[ast.AST] = list(tree.body)
     while waiting:
         node = waiting.pop()
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
