@@ -34,9 +34,8 @@ def binds(source: str) -> frozenset[str]:
     """The names that a cell gives a meaning at its top level: functions, classes, imports, variables."""
     tree = parsed(source)
     if tree is None:  # with a slip in it: what can be seen without parsing
-        found = set(re.findall(r"^(?:async\s+)?(?:def|class)\s+(\w+)", source, re.MULTILINE))
-        found |= set(re.findall(r"^(\w+)\s*=[^=]", source, re.MULTILINE))
-        return frozenset(found | set(re.findall(r"^(?:import|from)\s.*?(\w+)\s*$", source, re.MULTILINE)))
+        kinds = r"^(?:async\s+)?(?:def|class)\s+(\w+)", r"^(\w+)\s*=[^=]", r"^(?:import|from)\s.*?(\w+)\s*$"
+        return frozenset(name for kind in kinds for name in re.findall(kind, source, re.MULTILINE))
     found: set[str] = set()
     waiting: list[ast.AST] = list(tree.body)
     while waiting:
