@@ -239,7 +239,7 @@ class Restoration:
             if places or writers:
                 self.cells.insert(max(map(self.cells.index, places)) + 1, check)
                 said = (
-                    "had been changed; it was put back behind it"
+                    "had been changed; what stands there was run, and the test cell put back behind it"
                     if tried
                     else "is missing; it was put back behind its solution"
                 )

@@ -265,8 +265,14 @@ def test_all_of_them_earn_all_points(course, sandboxed, thorough):
     "tool, words",
     [
         (deleted, "the test cell of chain is missing; it was put back behind its solution"),
-        (split, "the test cell of chain had been changed; it was put back behind it"),
-        (joined, "the test cell of chain had been changed; it was put back behind it"),
+        (
+            split,
+            "the test cell of chain had been changed; what stands there was run, and the test cell put back behind it",
+        ),
+        (
+            joined,
+            "the test cell of chain had been changed; what stands there was run, and the test cell put back behind it",
+        ),
         (turned_to_text, "the cell chain had another type; it was set back"),
         (all_stripped, "nbgrader's data of all cells were lost; they were recognised by what stands in them"),
         (
