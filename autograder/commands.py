@@ -24,6 +24,14 @@ UNPROTECTED = (
     "gradebook and other students' work, and use the network."
 )
 
+COLLECT = "sort what an LMS gives as all submissions into submitted/, and say who came from what"
+COLLECT_AT_LENGTH = """\
+Takes "download all submissions" as it comes: zip files, or folders that they were unpacked into; of several, the later one
+counts. It sees which system a download is of, and puts the newest of each notebook into submitted/STUDENT/transforms/,
+unless what is there is newer or was changed by hand. Running it again changes nothing. Exit 0: done; 1: something was left
+that needs a look; 2: nothing was done.
+"""
+
 PROVE = "say what the cases of an exercise do not catch, and which case would"
 PROVE_AT_LENGTH = """\
 Says of each exercise whether its cases, as many seeds draw them, catch all misconceptions (and name each by its own id
@@ -84,6 +92,27 @@ def _parser():
     sub.add_argument("--remove", action="store_true", help="remove the demo's class again")
     add("lab", lab, "open the student's notebooks in JupyterLab; other options are passed on to it")
     add("release", release, "make notebooks/ from source/ and say what changed")
+    sub = add("collect", collect, COLLECT)
+    sub.formatter_class = argparse.RawDescriptionHelpFormatter
+    sub.description = COLLECT_AT_LENGTH
+    sub.add_argument("downloads", nargs="+", type=Path, metavar="FILE-OR-FOLDER", help="as the LMS gives it")
+    sub.add_argument(
+        "--students",
+        action="append",
+        default=[],
+        type=Path,
+        metavar="FILE",
+        help="a class list in CSV, as an LMS or nbgrader exports it; also Moodle's grading worksheet; may be given several times",
+    )
+    sub.add_argument(
+        "--from", dest="system", metavar="NAME", help="the system, where that cannot be seen, such as canvas"
+    )
+    sub.add_argument(
+        "--timezone",
+        metavar="NAME",
+        help="where the LMS's server is, such as Europe/Berlin, for times in its files' names (default: as this machine)",
+    )
+    sub.add_argument("--dry-run", action="store_true", help="say the same and write nothing")
     sub = add("grade", grade, "grade submitted/ into the gradebook, autograded/, feedback/ and reports/")
     sub.add_argument("students", nargs="*", metavar="STUDENT", help="only these (default: everybody)")
     sub.add_argument("--force", action="store_true", help="grade again what is unchanged")
@@ -205,6 +234,38 @@ def package(options):
             markup=False,
         )
     return 0
+
+
+def collect(options):
+    from .collecting.collect import collect as take
+    from .collecting.told import lines, needs_a_look, table
+
+    outcome = take(
+        course(),
+        options.downloads,
+        options.students,
+        options.system,
+        _zone(options.timezone),
+        options.dry_run,
+        busy=_busy,
+    )
+    if outcome.came:
+        shown = Table("student", "came from", "notebooks", "handed in", "", box=None, pad_edge=False)
+        for row in table(outcome):
+            _add_row(shown, *row)
+        console.print(shown)
+    for line in lines(outcome, options.timezone, options.dry_run):
+        console.print(line, markup=False)
+    return 1 if needs_a_look(outcome) else 0
+
+
+def _zone(name):
+    import zoneinfo
+
+    try:
+        return zoneinfo.ZoneInfo(name) if name else None
+    except (zoneinfo.ZoneInfoNotFoundError, ValueError, OSError):
+        raise CourseError(f"There is no time zone {name!r}; they are called as Europe/Berlin is.") from None
 
 
 def prove(options):
@@ -347,7 +408,7 @@ def _write_feedback(here, grades, jobs):
 
 
 def _busy():
-    console.print("Another grading run of this course is going on; waiting for its end …")
+    console.print("Another run of this course, grading or collecting, is going on; waiting for its end …")
 
 
 def _progress():

@@ -4,11 +4,11 @@ import os
 from pathlib import Path
 
 
-def replace(path: Path, text: str) -> None:
-    """Write a file in one step: whoever reads it finds the old text or the new one, and never half of it."""
+def replace(path: Path, content: str | bytes) -> None:
+    """Write a file in one step: whoever reads it finds the old content or the new one, and never half of it."""
     fresh = path.with_name(f".{path.name}.new")
     try:
-        fresh.write_text(text, encoding="utf-8")
+        fresh.write_bytes(content.encode() if isinstance(content, str) else content)
         os.replace(fresh, path)
     except OSError:
         fresh.unlink(missing_ok=True)

@@ -26,7 +26,7 @@ ROOMS = {
         "proving intake",
         "grading",
         "bridge",
-        "pages",
+        "pages collecting",
         "handout demo doctor",
         "commands",
         "__main__",

@@ -1,0 +1,78 @@
+"""Moodle: "Download all submissions" of an assignment, in all its forms.
+
+The rule is that of moodle/moodle: mod/assign/classes/downloader.php (before 4.1 mod/assign/locallib.php), and PARAM_FILE of
+lib/moodlelib.php. Folders are called FULLNAME_NUMBER_assignsubmission_file (before 4.1 with one `_` more at the end), with
+the student's own folders in them; with "download in folders" off, and before 3.1, FULLNAME_NUMBER_assignsubmission_file_NAME.
+What is typed into Moodle is …_assignsubmission_onlinetext. A site decides what FULLNAME is; known are "First Last",
+`LAST,FIRST-ID` and `First Last__userATdomain_`.
+
+NUMBER is that of a participant in this one assignment, and not the user's; the grading worksheet has it as "Participant
+NUMBER". In blind marking FULLNAME is "Participant" in the site's language. For teams it is the group's name and NUMBER the
+group's (before 4.0: "GROUP-Fullname", once for each member); "Default group", without a number, is who is in none.
+
+Moodle gives no time, and of each student the last attempt alone.
+"""
+
+import re
+from pathlib import PurePosixPath
+
+from .piece import Form, Found, Left, Piece, Who, own, plainly, share
+
+PART = re.compile(
+    r"(?P<name>.+?)(?:_(?P<number>\d+))?_assignsubmission_(?P<plugin>[a-z]+)(?:_(?P<file>.*))?", re.DOTALL
+)
+REMOVED = re.compile(r"[\x00-\x1f\x7f&<>\"`|':\\/]")  # PARAM_FILE
+ADDRESS = re.compile(r"(?P<name>.+?)__(?P<user>[^\s@]+)AT(?P<domain>[^\s@]+?)_?")
+PARTICIPANT = set(
+    "participant participante partecipante participant(e) teilnehmer/in teilnehmer teilnehmer*in teilnehmerin deelnemer "
+    "deltagare deltager deltaker osallistuja uczestnik účastník účastníčka résztvevő участник учасник συμμετέχων katılımcı 参加者 参与者 "
+    "成员 參與者 참가자 참여자 مشارك משתתף peserta".split()
+)
+
+
+def folded(name: str) -> str:
+    """A full name as it stands in a file's (downloader.php, then PARAM_FILE)."""
+    return plainly(REMOVED.sub("", name.replace("_", " ")))
+
+
+def fits(download):
+    return share(download, lambda path: PART.fullmatch(path.parts[0]))
+
+
+def sort(download, notebooks, people):
+    pieces, left, others = [], [], []
+    parts = {path: PART.fullmatch(path.parts[0]) for path in download.files}
+    found = {part[0]: part for part in parts.values() if part}.values()
+    names, numbers = {folded(part["name"]) for part in found}, {part["number"] for part in found}
+    blind = names <= PARTICIPANT or len(names) == 1 and len(numbers) > 1
+    teams = any(part["number"] is None for part in found)
+    for path, part in parts.items():
+        if not part:
+            left.append(Left("it is not named as Moodle names files", (str(path),)))
+            continue
+        who = Who(number=part["number"] or "") if blind else _who(part["name"], part["number"] or "", teams, people)
+        inside = PurePosixPath(part["file"] or "", *path.parts[1:])
+        if part["plugin"] == "onlinetext":
+            left.append(Left("a text, typed into Moodle", (str(path),), str(who)))
+        elif part["plugin"] != "file":
+            others.append(path)
+        elif part["number"] is None:
+            left.append(Left("a group's work, and Moodle does not say whose: it is of those in no group", (str(path),)))
+        else:
+            pieces.append(Piece((who,), path, inside))
+    return Found(pieces, left + own(others, "Moodle's own, or of another kind of submission"))
+
+
+def _who(name, number, teams, people):
+    """Who a folder's name tells of; a user name, number or address in it counts where it fits a known person's name."""
+    if address := ADDRESS.fullmatch(name):
+        return Who(address["name"], email=f"{address['user']}@{address['domain']}", number=number)
+    for word in re.split(r"[\s,_()-]+", name):
+        rest = " ".join(name.replace(word, " ", 1).replace("-", " ").split()) if word else ""
+        for kind in ("login", "sid"):
+            if rest and people.fits(kind, word, rest, FORM):
+                return Who(rest, number=number, **{kind: word})
+    return Who(name, number=number, group=teams)
+
+
+FORM = Form("moodle", "Moodle: Download all submissions", fits, sort, folded)
