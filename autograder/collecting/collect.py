@@ -103,6 +103,12 @@ def _collect(course, paths, lists, system, zone, dry_run):
             for person, whose in by_person.items():
                 student = _Student(course, view, form, kept, person, zone, dry_run, left)
                 outcome.came.append(student.take(whose))
+                if _is_perhaps_a_group(person, whose[0][0], form, people):
+                    outcome.came[-1].say(
+                        f"perhaps a group's: it came under the name {whose[0][0].name}; all members get it with a class list "
+                        "that has a column group",
+                        look=True,
+                    )
                 outcome.taken |= {(download.name, str(file)) for file in student.taken}
                 outcome.zoneless |= any(piece.time and not piece.time.tzinfo for _, piece in whose)
             outcome.left.setdefault(download.name, []).extend(left)
@@ -206,9 +212,15 @@ def _persons(who, form, people, with_list, twins):
         raise Unsure("the class list has nobody who is known by this; add a row for them, or what is missing in theirs")
     if person is None:
         person = people.add(_called(who))
-    person.learn(who, form.name)
-    people.learned()
+    if not _is_perhaps_a_group(person, who, form, people):
+        person.learn(who, form.name)
+        people.learned()
     return [person]
+
+
+def _is_perhaps_a_group(person, who, form, people):
+    """Whether a file has another name than the person whose number it has: Canvas names one member of a group so."""
+    return form.name == "canvas" and bool(who.name and person.variants()) and not people.called(person, who.name, form)
 
 
 def _helps(form):

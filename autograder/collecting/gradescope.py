@@ -43,13 +43,13 @@ def sort(download, notebooks, people):
         if not isinstance(entry, dict):
             left.append(Left(f"{METADATA} says nothing of it", (str(path),)))
             continue
-        submitters = entry.get(":submitters:")
+        submitters = entry.get(":submitters")
         whose = tuple(map(_who, filter(_told, submitters if isinstance(submitters, list) else ())))
         if not whose:
             left.append(Left("Gradescope does not say who handed it in", (str(path),)))
         else:
             inside = PurePosixPath(*path.parts[1:]) if len(path.parts) > 1 else path
-            pieces.append(Piece(whose, path, inside, time=_time(entry.get(":created_at:"))))
+            pieces.append(Piece(whose, path, inside, time=_time(entry.get(":created_at"))))
     return Found(pieces, left + own([METADATA], "Gradescope's own"))
 
 
@@ -70,7 +70,7 @@ def _who(submitter):
 
 
 def _text(submitter, key):
-    value = submitter.get(f":{key}:")
+    value = submitter.get(f":{key}")
     value = value.strip() if isinstance(value, str) else ""
     return "" if value in ("null", "~") else value
 

@@ -73,7 +73,8 @@ class Kept:
         people.learned()
 
     def remember(self, person: Person) -> None:
-        told = {kind: sorted(person.keys[kind]) for kind in KINDS if person.keys[kind]}
+        known = {kind: sorted(person.keys[kind] - {person.id}) for kind in KINDS}
+        told = {kind: values for kind, values in known.items() if values}
         written = {form: sorted(names) for form, names in sorted(person.written.items())}
         self._people[person.id] = told | ({"written": written} if written else {})
 

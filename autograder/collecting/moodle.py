@@ -25,7 +25,8 @@ REMOVED = re.compile(r"[\x00-\x1f\x7f&<>\"`|':\\/]")  # PARAM_FILE
 ADDRESS = re.compile(r"(?P<name>.+?)__(?P<user>[^\s@]+)AT(?P<domain>[^\s@]+?)_?")
 PARTICIPANT = set(
     "participant participante partecipante participant(e) teilnehmer/in teilnehmer teilnehmer*in teilnehmerin deelnemer "
-    "deltagare deltager deltaker osallistuja uczestnik účastník účastníčka résztvevő участник учасник συμμετέχων katılımcı 参加者 参与者 "
+    "deltagare deltager deltaker osallistuja uczestnik účastník účastníčka résztvevő участник учасник συμμετέχων "
+    "katılımcı 参加者 参与者 "
     "成员 參與者 참가자 참여자 مشارك משתתף peserta".split()
 )
 
@@ -67,11 +68,15 @@ def _who(name, number, teams, people):
     """Who a folder's name tells of; a user name, number or address in it counts where it fits a known person's name."""
     if address := ADDRESS.fullmatch(name):
         return Who(address["name"], email=f"{address['user']}@{address['domain']}", number=number)
-    for word in re.split(r"[\s,_()-]+", name):
-        rest = " ".join(name.replace(word, " ", 1).replace("-", " ").split()) if word else ""
+    for word in filter(None, re.split(r"[\s,_()-]+", name)):
+        rest = re.sub(r"\s*,\s*", ", ", re.sub(rf"[\s(_-]*{re.escape(word)}[\s)_-]*", " ", name, count=1).strip())
         for kind in ("login", "sid"):
             if rest and people.fits(kind, word, rest, FORM):
                 return Who(rest, number=number, **{kind: word})
+    for place in (place.start() for place in re.finditer("-", name)):
+        rest = name[place + 1 :].strip()
+        if " " in rest and people.named(rest, FORM) and not people.named(name, FORM):
+            return Who(rest, number=number)  # "GROUP-Fullname"
     return Who(name, number=number, group=teams)
 
 

@@ -98,7 +98,7 @@ class People:
 
     def fits(self, kind: str, value: str, name: str, form: Form) -> bool:
         """Whether somebody is known by that, and has that name."""
-        return any(self._called(person, name, form) for person in self._known_by(kind, value))
+        return any(self.called(person, name, form) for person in self._known_by(kind, value))
 
     def sortable(self) -> set[str]:
         """All names of all people in the form "Last, First"."""
@@ -117,7 +117,7 @@ class People:
                 continue
             for person in self._known_by(kind, value, form):
                 # such a number may be a group's, or one of another download: the name has to be the same
-                if kind != "number" or not who.name or not person.variants() or self._called(person, who.name, form):
+                if kind != "number" or not who.name or not person.variants() or self.called(person, who.name, form):
                     sure[person.id] = person
         if len(sure) > 1:
             raise Unsure(f"it fits several people: {_listed(sure)}; one of them has a wrong entry in the class list")
@@ -125,7 +125,7 @@ class People:
             return sure.popitem()[1]
         if not who.name or not by_name:
             return None
-        same = {person.id: person for person in self._named(who.name, form) if not _contradicts(person, who, form)}
+        same = {person.id: person for person in self.named(who.name, form) if not _contradicts(person, who, form)}
         if len(same) > 1:
             raise Unsure(f"several people have this name: {_listed(same)}; {_what_to_write(who)}")
         return same.popitem()[1] if same else None
@@ -139,7 +139,8 @@ class People:
         wanted = [value.casefold()] + ([f"{form.name} {value}".casefold()] if form else [])
         return [self.all[known] for key in wanted for known in sorted(self._keys[kind].get(key, ()))]
 
-    def _named(self, name, form):
+    def named(self, name: str, form: Form) -> list[Person]:
+        """Those who have a name, as a system writes it."""
         index = self._names.get(form.name)
         if index is None:
             index = self._names[form.name] = defaultdict(set)
@@ -163,12 +164,9 @@ class People:
             )
         return found.popitem()[1] if found else None
 
-    def _called(self, person, name, form):
-        """Whether a name is this person's; a site may have put a group's in front of it."""
-        wanted = form.folded(name)
-        return any(
-            wanted == known or wanted.endswith(f"-{known}") for known in map(form.folded, person.variants()) if known
-        )
+    def called(self, person: Person, name: str, form: Form) -> bool:
+        """Whether a name, as a system writes it, is this person's."""
+        return form.folded(name) in map(form.folded, person.variants())
 
 
 def identifier(who: Who) -> str:

@@ -28,7 +28,7 @@ FLAT = re.compile(rf"(?P<person>{PERSON.pattern})_(?P<word>[^_]+)(?:_(?P<file>.+
 ANONYMOUS = re.compile(r"(?P<id>[0-9a-f]{8}(?:-[0-9a-f]{4}){3}-[0-9a-f]{12})( .*)?", re.IGNORECASE)
 GRADES = re.compile(r"grades\.(csv|xlsx?)")
 TEXT = re.compile(r"(.*_)?submissionText\.html?")
-OWN = re.compile(rf"timestamp\.txt|members\.txt|comments\.txt|feedbackText\.html?|{TEXT.pattern}")
+ADDED = {"timestamp.txt", "members.txt", "comments.txt", "feedbackText.html"}
 FEEDBACK = re.compile(
     "feedback|retroaliment|rétroaction|commentaire|comentari|realiment|riscontr|フィードバック", re.IGNORECASE
 )
@@ -52,8 +52,12 @@ def _folders(download):
     held = defaultdict(set)
     for path in download.files:
         if len(path.parts) > 1:
-            held[path.parts[0]].add(path.parts[1])
-    return {name for name, inside in held.items() if any(OWN.fullmatch(each) or "(s)" in each for each in inside)}
+            held[path.parts[0]].add(path.parts[1] + "/" * (len(path.parts) > 2))
+    return {
+        name
+        for name, inside in held.items()
+        if any(each in ADDED or each.startswith(f"{name}_") or each.endswith("(s)/") for each in inside)
+    }
 
 
 def _flat(path):
@@ -91,7 +95,7 @@ def sort(download, notebooks, people):
                 left.append(Left("a text, typed into Sakai", (str(path),), ", ".join(map(str, people_of))))
             else:
                 texts.append(path)
-        elif not word and OWN.fullmatch(inside.name) or FEEDBACK.search(word):
+        elif not word and inside.name in ADDED or FEEDBACK.search(word):
             texts.append(path)
         elif not word and flat:
             left.append(Left("it is not named as Sakai names files", (str(path),)))
