@@ -40,6 +40,8 @@ c.HTMLExporter.filters = {"markdown2html": "autograder.pages.markdown.markdown2h
 # Students write into the exchange: what they put there neither fetches files of the instructor's nor stops the others.
 c.ExchangeFactory.collect = "autograder.intake.exchange.Collect"
 c.ExchangeFactory.release_feedback = "autograder.intake.exchange.ReleaseFeedback"
+# `nbgrader zip_collect` knows the downloads of learning management systems.
+c.ZipCollectApp.collector_plugin = "autograder.collecting.zip_collect.Collector"
 # Feedback pages that need no network, say a mistake in numbers and frames, and stay small.
 c.GenerateFeedback.exporter_class = "autograder.pages.exporter.Feedback"
 c.GenerateFeedback.preprocessors = [

@@ -540,7 +540,7 @@ def export(options):
     with Writer(here) as writer:
         found = export.totals(writer.gradebook)
         text = export.text(here, writer.gradebook, found, options.format, options.column)
-        lines = list(export.remarks(found, options.format))
+        lines = list(export.remarks(found, options.format, export.absent(writer.gradebook)))
     if str(options.output) == "-":
         sys.stdout.write(text)
     elif not options.output.parent.is_dir():

@@ -5,6 +5,7 @@ notebook, and put them into submitted/STUDENT/transforms/ unless something newer
 import os
 from collections import defaultdict
 from collections.abc import Callable, Iterable
+from contextlib import ExitStack
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, tzinfo
 from pathlib import Path, PurePosixPath
@@ -85,23 +86,15 @@ def collect(
 
 def _collect(course, paths, lists, system, zone, dry_run):
     kept, people, outcome = Kept(course), People(FORMS.values()), Outcome()
-    _introduce(course, people)
+    introduce(course, people)
     kept.introduce(people)
     for path in lists:
         roster.read(path, people)
-    with_list = any(person.listed for person in people.all.values())
-    downloads = [Download(path) for path in _separate(paths)]
-    try:
-        known = [(download, *recognised(download, system)) for download in downloads]
-        known.sort(key=lambda each: each[0].made or datetime.min)  # of two, the later one counts
-        for download, form, view in known:
-            found = form.sort(view, list(course.notebooks), people)
-            left = [
-                Left(problem.rstrip(".").replace(": left out; ", ": "), ()) for problem in download.problems
-            ] + found.left
-            by_person = _by_person(found.pieces, form, people, with_list, left)
+    with ExitStack() as stack:
+        downloads = [stack.enter_context(Download(path)) for path in _separate(paths)]
+        for download, form, view, by_person, left in by_download(downloads, people, list(course.notebooks), system):
             for person, whose in by_person.items():
-                student = _Student(course, view, form, kept, person, zone, dry_run, left)
+                student = Student(course, view, form, kept.files.setdefault(person.id, {}), person, zone, dry_run, left)
                 outcome.came.append(student.take(whose))
                 if _is_perhaps_a_group(person, whose[0][0], form, people):
                     outcome.came[-1].say(
@@ -112,15 +105,25 @@ def _collect(course, paths, lists, system, zone, dry_run):
                 outcome.taken |= {(download.name, str(file)) for file in student.taken}
                 outcome.zoneless |= any(piece.time and not piece.time.tzinfo for _, piece in whose)
             outcome.left.setdefault(download.name, []).extend(left)
-    finally:
-        for download in downloads:
-            download.__exit__()
-    if not dry_run:
-        _remember(course, people, kept, {came.student for came in outcome.came})
     there = {came.student for came in outcome.came}
+    if not dry_run:
+        _remember(course, people, kept, there)
+    with_list = any(person.listed for person in people.all.values())
     in_class = [person.id for person in people.all.values() if person.listed or not with_list]
     outcome.missing = sorted(each for each in in_class if each not in there and not course.submitted(each).is_dir())
     return outcome
+
+
+def by_download(downloads, people, notebooks, system=None):
+    """(download, form, view, {Person: [(Who, Piece)]}, [Left]) of each, the one made last at the end: of two, it counts.
+
+    All are recognised before the first is sorted; raises CourseError when one is not.
+    """
+    known = [(download, *recognised(download, system)) for download in downloads]
+    for download, form, view in sorted(known, key=lambda each: each[0].made or datetime.min):
+        found = form.sort(view, notebooks, people)
+        left = [Left(problem.rstrip(".").replace(": left out; ", ": ")) for problem in download.problems] + found.left
+        yield download, form, view, _by_person(found.pieces, form, people, left), left
 
 
 # --- what is there --------------------------------------------------------------------------------------------------
@@ -147,7 +150,7 @@ def _is_of_a_system(path):
         return False
 
 
-def _introduce(course, people):
+def introduce(course, people):
     """Tell `people` who is in nbgrader's table, if there is one."""
     if not _has_gradebook(course):
         return
@@ -165,11 +168,11 @@ def _has_gradebook(course):
     return url.get_backend_name() != "sqlite" or bool(url.database and Path(url.database).exists())
 
 
-def _by_person(pieces, form, people, with_list, left):
+def _by_person(pieces, form, people, left):
     """{Person: [(Who, Piece)]}; what is nobody's for sure is put into `left`."""
     found, unknown, persons = defaultdict(list), defaultdict(list), {}
     everybody = {who for piece in pieces for who in piece.whose}
-    twins = same_names(everybody, form)
+    twins, with_list = same_names(everybody, form), any(person.listed for person in people.all.values())
     for who in sorted(everybody, key=lambda who: (str(who), who.number)):
         try:
             persons[who] = _persons(who, form, people, with_list, twins.get(who, ()))
@@ -252,10 +255,10 @@ class _Candidate:
         return self.time or datetime.min.replace(tzinfo=UTC), self.piece.order
 
 
-class _Student:
+class Student:
     """Puts what came of one student into their folder, and says what it did."""
 
-    def __init__(self, course, download, form, kept, person, zone, dry_run, left):
+    def __init__(self, course, download, form, known, person, zone, dry_run, left):
         self.course, self.download, self.form, self.zone, self.dry_run, self.left = (
             course,
             download,
@@ -265,13 +268,14 @@ class _Student:
             left,
         )
         self.folder = course.submitted(person.id)
-        self.known = kept.files.setdefault(person.id, {})
+        self.known = known  # {path: Origin} of what was collected before
         self.came = Came(person.id, Who(), form)
         self.taken: set[PurePosixPath] = set()
 
     def take(self, pieces) -> Came:
+        """Write what is new; pieces: [(Who, Piece)]"""
         self.came.who = pieces[0][0]
-        chosen = self._chosen(pieces)
+        chosen = self.chosen(pieces)
         for place, candidate in sorted(chosen.items()):
             self._put(place, candidate)
         times = [candidate.time for candidate in chosen.values() if candidate.time]
@@ -281,7 +285,7 @@ class _Student:
             self._stamp(self.came.time)
         return self.came
 
-    def _chosen(self, pieces):
+    def chosen(self, pieces):
         """{place in the student's folder: the _Candidate for it}"""
         offered = defaultdict(list)
         for who, piece in pieces:

@@ -69,7 +69,7 @@ class Download:
         where = self.files[path]
         if self._archive:
             return self._archive.read(where)
-        content, problem = read(Path(self._folder or "", where))
+        content, problem = read(self.place(path))
         if content is None:
             raise Refused((problem or "").removeprefix("left out; "))
         if len(content) > LARGEST:
@@ -80,6 +80,10 @@ class Download:
         """Where the first `depth` folders of a file's path lie on the disk; None for what lies in a zip file."""
         below = len(path.parts) - depth
         return self._folder.joinpath(*self.files[path].parts[:-below]) if self._folder else None
+
+    def place(self, path: PurePosixPath) -> Path:
+        """Where one of the files of a folder lies on the disk."""
+        return Path(self._folder or "", self.files[path])
 
     def views(self) -> Iterator["Download"]:
         """The download as it is, and without one or more of the folders in which all of it lies."""

@@ -41,13 +41,23 @@ def totals(gradebook):
     return sorted(found, key=lambda total: total.student.id)
 
 
-def plain(course, assignment, found, column):
+def absent(gradebook):
+    """[nbgrader's Student] of the class who have handed nothing in."""
+    there = {done.student_id for done in gradebook.assignment_submissions(ASSIGNMENT)}
+    return sorted(
+        (student for student in gradebook.students if student.id not in there), key=lambda student: student.id
+    )
+
+
+def plain(course, assignment, found, column, absent):
     yield "student", "score", "max_score", "needs_manual_grade"
     for total in found:
         yield total.student.id, round(total.score, 2), assignment.max_score, "yes" if total.waiting else "no"
+    for student in absent:
+        yield student.id, 0, assignment.max_score, "nothing handed in"
 
 
-def canvas(course, assignment, found, column):
+def canvas(course, assignment, found, column, absent):
     """Canvas finds a student by the first of these that it knows: ID (its own number), SIS User ID, SIS Login ID, name."""
     yield "Student", "ID", "SIS User ID", "SIS Login ID", "Section", column
     yield "Points Possible", "", "", "", "", assignment.max_score
@@ -60,7 +70,7 @@ def canvas(course, assignment, found, column):
         yield name, *ids, who.id, "", round(total.score, 2)
 
 
-def moodle(course, assignment, found, column):
+def moodle(course, assignment, found, column, absent):
     """The columns of Moodle's own export; which of the first ones tells who a student is, is chosen in its preview."""
     yield "First name", "Last name", "Username", "ID number", "Email address", column, f"{column} (feedback)"
     for total in found:
@@ -70,8 +80,8 @@ def moodle(course, assignment, found, column):
 
 
 class Format(NamedTuple):
-    """A table of points. rows: from (course, assignment, [StudentTotal], column) to the rows of cells, the head among them;
-    shown: what it has of a student besides the id, as nbgrader's student table calls it
+    """A table of points. rows: from (course, assignment, [StudentTotal], column, [Student who is absent]) to the rows of cells,
+    the head among them; shown: what it has of a student besides the id, as nbgrader's student table calls it
     """
 
     rows: Callable
@@ -100,7 +110,8 @@ def text(course, gradebook, found, name, column=ASSIGNMENT):
     """
     table = io.StringIO()
     writer = csv.writer(table, lineterminator="\n")
-    cells = [row for row in known_format(name).rows(course, gradebook.find_assignment(ASSIGNMENT), found, column)]
+    assignment, rows = gradebook.find_assignment(ASSIGNMENT), known_format(name).rows
+    cells = list(rows(course, assignment, found, column, absent(gradebook)))
     dangerous = {cell: None for row in cells for cell in row if isinstance(cell, str) and FORMULA.match(cell)}
     if dangerous:
         raise CourseError(
@@ -112,8 +123,11 @@ def text(course, gradebook, found, name, column=ASSIGNMENT):
     return table.getvalue()
 
 
-def remarks(found, name):
-    """Lines about what the table does not tell: points that are not final, and who is not known by name."""
+def remarks(found, name, absent=()):
+    """Lines about what the table does not tell: points that are not final, who is absent, and who is not known by name.
+
+    An LMS gets no row for who is absent: what it does to a grade that it has is not ours to decide.
+    """
     if not found:
         yield "Nobody is in the gradebook yet: run `python3 -m autograder grade` first."
     if waiting := sum(total.waiting for total in found):
@@ -122,6 +136,9 @@ def remarks(found, name):
             f"These points are not final: written answers of {whose} wait to be graded by hand "
             "(`jupyter lab`, then Nbgrader > Formgrader)."
         )
+    if absent:
+        row = "" if name == "plain" else ", and not in the table, so that no grade is changed"
+        yield f"In the class, nothing handed in{row}: {', '.join(student.id for student in absent)}."
     nameless = sum(not all(getattr(total.student, field) for field in known_format(name).shown) for total in found)
     if nameless:
         fields = ", ".join(known_format(name).shown)

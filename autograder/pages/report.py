@@ -57,6 +57,7 @@ def write(course, writer):
         results=findings.results(works),
         look=findings.look(works),
         ungraded=sorted(set(handed_in) - known),
+        absent=sorted({student.id for student in writer.gradebook.students} - known - set(handed_in)),
         questions=_questions(course, waiting),
         waiting=Counter(student for student, _, _ in waiting),
         formgrader=FORMGRADER,

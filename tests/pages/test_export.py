@@ -64,7 +64,20 @@ def test_a_plain_table(graded):
     assert table(graded, "plain") == [
         ["student", "score", "max_score", "needs_manual_grade"],
         *([student, "1.5", MOST, "yes"] for student in sorted(PEOPLE)),
+        ["absent", "0", MOST, "nothing handed in"],
     ]
+
+
+def test_who_handed_nothing_in_is_said_and_gets_no_row_in_an_lms(graded):
+    with Writer(graded) as writer:
+        missing = export.absent(writer.gradebook)
+        assert [student.id for student in missing] == ["absent"]
+        for name in ("canvas", "moodle"):
+            lines = list(export.remarks(export.totals(writer.gradebook), name, missing))
+            assert (
+                "In the class, nothing handed in, and not in the table, so that no grade is changed: absent." in lines
+            )
+            assert not [row for row in table(graded, name) if "absent" in row or "Nobody" in row]
 
 
 def test_the_columns_of_canvas(graded):

@@ -1,0 +1,49 @@
+"""`nbgrader zip_collect`, which takes what `collect` would take; nbgrader_config.py names the class here.
+
+nbgrader asks of one file at a time whose it is, and its own pattern takes the minutes and seconds of Blackboard's names for a
+time zone. This looks at all that was unpacked, once, as `collect` does, and answers from that.
+"""
+
+from contextlib import ExitStack
+from functools import cached_property
+from pathlib import Path
+
+from nbgrader.plugins import FileNameCollectorPlugin
+
+from ..course import Course, CourseError
+from .collect import Student, by_download, introduce
+from .download import Download
+from .people import People
+from .systems import FORMS
+
+
+class Collector(FileNameCollectorPlugin):
+    """Tells nbgrader a file's student, name and time, or that it is to be left."""
+
+    def collect(self, submitted_file):
+        return self._known.get(Path(submitted_file).resolve())
+
+    @cached_property
+    def _known(self):
+        """{path: what nbgrader asks for}"""
+        course, found = Course(Path(self.coursedir.root)), {}
+        people = People(FORMS.values())
+        introduce(course, people)
+        unpacked = Path(self.parent._format_collect_path(self.parent.extracted_directory))
+        inside = sorted(path for path in unpacked.iterdir() if not path.name.startswith("."))
+        try:
+            with ExitStack() as stack:
+                folders = inside if all(path.is_dir() for path in inside) else [unpacked]
+                downloads = [stack.enter_context(Download(path)) for path in folders]
+                for _, form, view, by_person, left in by_download(downloads, people, list(course.notebooks)):
+                    for person, whose in by_person.items():
+                        chosen = Student(course, view, form, {}, person, None, True, left).chosen(whose)
+                        for place, candidate in chosen.items():
+                            told = {"student_id": person.id, "file_id": place}
+                            time = {"timestamp": candidate.time.isoformat()} if candidate.time else {}
+                            found[view.place(candidate.piece.file).resolve()] = told | time
+                    for one in left:
+                        self.log.warning("%s: %s %s", one.whose or "left", one.why, ", ".join(one.files))
+        except CourseError as error:
+            self.log.error("%s", error)
+        return found
