@@ -56,7 +56,9 @@ def _folders(download):
     return {
         name
         for name, inside in held.items()
-        if any(each in ADDED or each.startswith(f"{name}_") or each.endswith("(s)/") for each in inside)
+        if "members.txt" in inside
+        or (PERSON.fullmatch(name) or ANONYMOUS.fullmatch(name))
+        and any(each in ADDED or each.startswith(f"{name}_") or each.endswith("(s)/") for each in inside)
     }
 
 

@@ -26,7 +26,7 @@ class Collector(FileNameCollectorPlugin):
     @cached_property
     def _known(self):
         """{path: what nbgrader asks for}"""
-        course, found = Course(Path(self.coursedir.root)), {}
+        course, found = Course(Path(self.parent.coursedir.root)), {}
         people = People(FORMS.values())
         introduce(course, people)
         unpacked = Path(self.parent._format_collect_path(self.parent.extracted_directory))

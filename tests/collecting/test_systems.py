@@ -4,7 +4,7 @@ from pathlib import Path
 
 import downloads
 import pytest
-from downloads import ODD, START, Attempt, Student, later, of_30, packed, unpacked
+from downloads import ODD, Attempt, Student, later, of_30, packed, unpacked
 
 from autograder.collecting.collect import collect
 from autograder.collecting.people import folder_name
@@ -444,4 +444,3 @@ def test_folders_around_a_download_do_not_matter(course, submitted, work, tmp_pa
 
 def test_every_system_has_its_downloads_here():
     assert {system for _, system, _, _ in SYSTEMS.values()} | {"github"} == set(FORMS)
-    assert START

@@ -281,6 +281,14 @@ def test_what_is_not_graded_is_said(course, solved, hand_in):
     words = read(course).words
     assert "Handed in, but not graded: late." in words
     assert "ben 1_rotation.ipynb: not graded yet; run python3 -m autograder grade" in words
+    assert "nothing handed in" not in words
+
+
+def test_who_is_in_the_class_and_handed_nothing_in_is_said(course):
+    with Writer(course) as writer:
+        writer.gradebook.update_or_create_student("zoe")
+    make(course)
+    assert "In the class, nothing handed in: zoe." in read(course).words
 
 
 def test_a_class_of_nobody(released, tmp_path):
