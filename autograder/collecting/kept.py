@@ -70,7 +70,7 @@ class Kept:
                 person.keys[kind] |= set(told.get(kind, ()))
             for form, names in told.get("written", {}).items():
                 person.written.setdefault(form, set()).update(names)
-        people.learned()
+            people.learned(person)
 
     def remember(self, person: Person) -> None:
         known = {kind: sorted(person.keys[kind] - {person.id}) for kind in KINDS}

@@ -10,10 +10,13 @@ from collections import defaultdict
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from .piece import Form, Who, plainly
+from .piece import Form, Found, Who, plainly
 
 KINDS = ("login", "email", "lms_id", "sid", "number")
 LONGEST = 128  # characters of a student's id in nbgrader's table
+
+
+LISTS = Form("list", "a class list", lambda _: 0.0, lambda *_: Found([], []), plainly)
 
 
 class Unsure(ValueError):
@@ -70,9 +73,9 @@ class People:
 
     def __init__(self, forms: Iterable[Form] = ()):
         self.all: dict[str, Person] = {}
-        self._forms = {form.name: form for form in forms}
-        self._names: dict[str, dict[str, set[str]]] = {}
-        self._keys: dict[str, dict[str, set[str]]] = {}
+        self._forms = {form.name: form for form in (*forms, LISTS)}
+        self._by_name: dict[str, dict[str, set[str]]] = {}  # of each form: {name as it writes it: ids}
+        self._by_key: dict[str, dict[str, set[str]]] = {kind: defaultdict(set) for kind in KINDS}
 
     def add(self, identifier: str) -> Person:
         """A new Person; raises Unsure when there is one whose id differs in capitals at most: a folder's name has to be one."""
@@ -81,13 +84,16 @@ class People:
                 f"there is already another student {same}; give a class list with --students that tells them apart"
             )
         self.all[identifier] = Person(identifier)
-        self.learned()
+        self.learned(self.all[identifier])
         return self.all[identifier]
 
-    def learned(self) -> None:
+    def learned(self, person: Person) -> None:
         """To be called after a Person has learned something."""
-        self._names.clear()
-        self._keys.clear()
+        for kind, index in self._by_key.items():
+            for known in _of(person, kind):
+                index[known.casefold()].add(person.id)
+        for name in self._by_name:
+            self._index_names(person, self._forms[name])
 
     def values(self, kind: str) -> set[str]:
         """All that somebody is known by, of one kind; a student's id may be a login."""
@@ -106,8 +112,8 @@ class People:
 
     def members(self, name: str, form: Form) -> list[Person]:
         """The members of a group of this name."""
-        wanted = form.folded(name)
-        return [person for person in self.all.values() if wanted in map(form.folded, person.groups)]
+        grouped = [person for person in self.all.values() if person.groups]
+        return [person for person in grouped if form.folded(name) in map(form.folded, person.groups)]
 
     def find(self, who: Who, form: Form, by_name: bool = True) -> Person | None:
         """The Person that a download or a list means, or None; raises Unsure. by_name: whether a name alone is enough"""
@@ -131,23 +137,20 @@ class People:
         return same.popitem()[1] if same else None
 
     def _known_by(self, kind, value, form=None):
-        if kind not in self._keys:
-            index = self._keys[kind] = defaultdict(set)
-            for person in self.all.values():
-                for known in _of(person, kind):
-                    index[known.casefold()].add(person.id)
         wanted = [value.casefold()] + ([f"{form.name} {value}".casefold()] if form else [])
-        return [self.all[known] for key in wanted for known in sorted(self._keys[kind].get(key, ()))]
+        return [self.all[known] for key in wanted for known in sorted(self._by_key[kind].get(key, ()))]
 
     def named(self, name: str, form: Form) -> list[Person]:
         """Those who have a name, as a system writes it."""
-        index = self._names.get(form.name)
-        if index is None:
-            index = self._names[form.name] = defaultdict(set)
+        if form.name not in self._by_name:
+            self._by_name[form.name] = defaultdict(set)
             for person in self.all.values():
-                for variant in person.variants():
-                    index[form.folded(variant)].add(person.id)
-        return [self.all[known] for known in sorted(index.get(form.folded(name), ()))]
+                self._index_names(person, form)
+        return [self.all[known] for known in sorted(self._by_name[form.name].get(form.folded(name), ()))]
+
+    def _index_names(self, person, form):
+        for variant in person.variants():
+            self._by_name[form.name][form.folded(variant)].add(person.id)
 
     def listed_as(self, listed: Person) -> Person | None:
         """Who is known by nothing but a download's way of writing that name, of which a class list now tells all."""
@@ -155,7 +158,7 @@ class People:
             person.id: person
             for person in self.all.values()
             for name, written in person.written.items()
-            if name in self._forms and not _contradict(person, listed)
+            if not _contradict(person, listed)
             if set(map(self._forms[name].folded, written)) & set(map(self._forms[name].folded, listed.variants()))
         }
         if len(found) > 1:
@@ -185,7 +188,7 @@ def _contradicts(person, who, form):
     for kind in KINDS:
         known, value = {each.casefold() for each in person.keys[kind]}, getattr(who, kind).casefold()
         if kind == "number":
-            of_lists = form.name == "list"
+            of_lists = form is LISTS
             known = {each for each in known if each.startswith(f"{form.name} ") or of_lists and " " not in each}
             value = value if of_lists or not value else f"{form.name} {value}"
         if known and value and value not in known:

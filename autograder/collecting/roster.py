@@ -11,8 +11,8 @@ import re
 from pathlib import Path
 
 from ..course import CourseError
-from .people import KINDS, People, Person, Unsure, folder_name
-from .piece import Form, Found, Who, plainly
+from .people import KINDS, LISTS, People, Person, Unsure, folder_name
+from .piece import Who
 
 # What a column is called, in small letters: {what it says: names}. A column `id` is looked at in `_heads`.
 COLUMNS = {
@@ -35,7 +35,6 @@ PEOPLE = ("id", "login", "email", "lms_id", "sid", "number", "name", "first", "l
 NOBODY = re.compile(r"(points possible|student, test|test student|.*manual posting.*)", re.IGNORECASE)
 LARGEST = 20_000_000  # bytes
 ROWS = 12  # among which the row with the columns' names is looked for
-LISTS = Form("list", "a class list", lambda _: 0.0, lambda *_: Found([], []), plainly)
 
 
 def read(path: Path, people: People) -> None:
@@ -56,7 +55,7 @@ def read(path: Path, people: People) -> None:
                 unsure.append(f"{path}: {who}: the list has this name twice; give it a column that tells them apart.")
             here.add(person)
             _learn(person, row, who)
-            people.learned()
+            people.learned(person)
     if unsure:
         raise CourseError("\n".join(unsure))
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from nbgrader.plugins import FileNameCollectorPlugin
 
 from ..course import Course, CourseError
-from .collect import Student, by_download, introduce
+from .collect import Folder, by_download, introduce
 from .download import Download
 from .people import People
 from .systems import FORMS
@@ -37,7 +37,7 @@ class Collector(FileNameCollectorPlugin):
                 downloads = [stack.enter_context(Download(path)) for path in folders]
                 for _, form, view, by_person, left in by_download(downloads, people, list(course.notebooks)):
                     for person, whose in by_person.items():
-                        chosen = Student(course, view, form, {}, person, None, True, left).chosen(whose)
+                        chosen = Folder(course, view, form, {}, person, None, True, left).chosen(whose)
                         for place, candidate in chosen.items():
                             told = {"student_id": person.id, "file_id": place}
                             time = {"timestamp": candidate.time.isoformat()} if candidate.time else {}
