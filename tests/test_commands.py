@@ -270,6 +270,18 @@ def test_release_says_what_changed(course, slow):
 def test_help_names_every_command_of_the_readme(course):
     code, said = run(course, "--help")
     assert code == 0
-    for command in ("demo", "lab", "release", "grade", "report", "check", "doctor", "package", "export", "test"):
+    for command in (
+        "demo",
+        "lab",
+        "release",
+        "grade",
+        "report",
+        "check",
+        "collect",
+        "doctor",
+        "package",
+        "export",
+        "test",
+    ):
         assert f"    {command} " in said
     assert Path(course.root, "README.md").exists()

@@ -158,7 +158,7 @@ class People:
             person.id: person
             for person in self.all.values()
             for name, written in person.written.items()
-            if not _contradict(person, listed)
+            if name in self._forms and not _contradict(person, listed)
             if set(map(self._forms[name].folded, written)) & set(map(self._forms[name].folded, listed.variants()))
         }
         if len(found) > 1:

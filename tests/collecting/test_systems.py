@@ -78,8 +78,14 @@ def state(folder):
 
 
 @pytest.mark.parametrize("name", SYSTEMS)
-@pytest.mark.parametrize("students", [ODD, of_30()], ids=["odd names", "30"])
-@pytest.mark.parametrize("form", ["zip", "folder"])
+@pytest.mark.parametrize(
+    "students, form",
+    [
+        pytest.param(ODD, "zip", id="odd names"),
+        pytest.param(of_30(), "zip", id="30", marks=pytest.mark.slow),
+        pytest.param(of_30(), "folder", id="30 unpacked", marks=pytest.mark.slow),
+    ],
+)
 def test_a_class_comes_out_as_it_handed_in(course, submitted, work, tmp_path, name, students, form):
     build, system, called, timed = SYSTEMS[name]
     handed_in = {student: work(student.login) | {"helper.py": b"x = 1"} for student in students}
@@ -133,7 +139,7 @@ def test_with_a_class_list_everybody_has_their_own_id(course, submitted, work, t
 
 
 @pytest.mark.parametrize("name", SYSTEMS)
-def test_the_same_students_after_a_class_list_is_there(course, submitted, work, tmp_path, name):
+def test_the_same_students_after_a_class_list_is_there(course, submitted, work, tmp_path, slow, name):
     """Who was known by a name or a number stays the same student when a list tells all of them."""
     build, _, called, _ = SYSTEMS[name]
     files = build({student: [Attempt(work(student.login))] for student in ODD})
