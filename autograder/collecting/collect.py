@@ -202,16 +202,16 @@ def _persons(who, form, people, with_list, twins):
             "a group's work, and the download does not say who is in it; give a class list with a column group"
         )
     person = people.find(who, form, by_name=not twins)
-    row = f"columns id,number, and a row STUDENT,{who.number}"
+    tells = (
+        f"give a list with --students that does ({_helps(form)}columns id,number, and a row STUDENT,NUMBER for each)"
+    )
     if person is None and twins:
         raise Unsure(
-            f"several people in this download have this name ({', '.join(sorted(map(str, (who, *twins))))}), or one has come "
-            f"twice; give a list with --students that tells who this is ({_helps(form)}{row})"
+            "several people in this download have one name, or one has come under two numbers; the download does not say who "
+            f"is who: {tells}"
         )
     if person is None and who.number and not (who.name or who.login):
-        raise Unsure(
-            f"the download does not say who this is; give a list with --students that does ({_helps(form)}{row})"
-        )
+        raise Unsure(f"the download does not say who this is: {tells}")
     if person is None and with_list:
         raise Unsure("the class list has nobody who is known by this; add a row for them, or what is missing in theirs")
     if person is None:

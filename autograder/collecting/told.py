@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from .collect import Came, Outcome
 
-MOST = 5  # files, or people, that are named one by one
+MOST = 5  # files that are named one by one
 
 
 def table(outcome: Outcome) -> list[tuple[str, str, str, str, str]]:
@@ -36,7 +36,7 @@ def lines(outcome: Outcome, zone: str | None, dry_run: bool) -> Iterator[str]:
         for (why, _), some in sorted(reasons.items(), key=lambda each: not each[0][1]):
             files = [name for one in some for name in one.files]
             people = list(dict.fromkeys(one.whose for one in some if one.whose))
-            whose = f"{_some(people)}: " if people else ""
+            whose = f"{', '.join(people)}: " if people else ""
             yield f"{download}: left: {whose}{why}" + (f" ({_some(files)})." if files else ".")
     if outcome.missing:
         yield f"Nothing handed in: {', '.join(outcome.missing)}."
@@ -44,7 +44,9 @@ def lines(outcome: Outcome, zone: str | None, dry_run: bool) -> Iterator[str]:
         yield f"Times in files' names are taken as local time {f'of {zone}' if zone else 'of this machine (--timezone)'}."
     written = sum(bool(came.written) for came in outcome.came)
     students = len({came.student for came in outcome.came})
-    if not written:
+    if not outcome.came:
+        yield "Nothing was taken."
+    elif not written:
         yield f"Nothing is new: {students} {'student' if students == 1 else 'students'}, all as they were."
     else:
         count = sum(len(came.written) for came in outcome.came)

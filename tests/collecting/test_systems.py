@@ -214,7 +214,9 @@ def test_canvas_anonymous_names_nobody_until_a_list_does(course, submitted, work
     outcome = collect(course, [where])
     assert submitted() == {} and not accounted(files, outcome)
     reasons = [one for some in outcome.left.values() for one in some]
-    assert len(reasons) == 3 and all("columns id,number, and a row STUDENT," in one.why for one in reasons)
+    assert len(reasons) == 3 and all(
+        "columns id,number, and a row STUDENT,NUMBER" in one.why and one.whose for one in reasons
+    )
     code = next(name for name in files if not name.startswith("LATE")).split("_")[1]
     (tmp_path / "codes.csv").write_text(f"id,number\nana,{code}\n")
     collect(course, [where], [tmp_path / "codes.csv"])
@@ -260,7 +262,7 @@ def test_two_people_of_one_name_in_moodle_stop_alone_and_the_worksheet_tells_the
     outcome = collect(course, [where])
     assert submitted() == {by_name(ODD[0]): work(ODD[0].login)} and not accounted(files, outcome)
     reasons = [one for some in outcome.left.values() for one in some]
-    assert len(reasons) == 2 and all("several people in this download have this name" in one.why for one in reasons)
+    assert len(reasons) == 2 and all("several people in this download have one name" in one.why for one in reasons)
     listed = write_list(tmp_path / "list.csv", [*twins, ODD[0]])
     outcome = collect(course, [where], [listed])
     assert len([one for some in outcome.left.values() for one in some]) == 2  # the list has no number of Moodle's
