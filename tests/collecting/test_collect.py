@@ -312,6 +312,7 @@ def test_a_link_in_submitted_is_not_followed(course, submitted, work, tmp_path):
     files = {f"agarcia/{name}": content for name, content in mine.items()}
     outcome = collect(course, [packed(tmp_path / "a.zip", files)])
     assert list(outside.iterdir()) == [] and len(reasons(outcome)) == 2
+    assert all("is no file, or lies behind a link" in one.why for one in reasons(outcome))
     assert (folder / "3_chaining.ipynb").exists()
 
 

@@ -1,10 +1,11 @@
 """Each system's downloads, from its rule to submitted/: the right students, the right bytes, the newest, and nothing lost."""
 
+from datetime import UTC
 from pathlib import Path
 
 import downloads
 import pytest
-from downloads import ODD, Attempt, Student, later, of_30, packed, unpacked
+from downloads import ODD, START, Attempt, Student, later, of_30, packed, unpacked
 
 from autograder.collecting.collect import collect
 from autograder.collecting.people import folder_name
@@ -99,7 +100,9 @@ def test_a_class_comes_out_as_it_handed_in(course, submitted, work, tmp_path, na
     assert set(found) == {called(student) for student in students}
     for student, mine in handed_in.items():
         theirs = found[called(student)]
-        assert timed == bool(theirs.pop("timestamp.txt", None))
+        time = theirs.pop("timestamp.txt", b"").decode()
+        zoned = START.replace(tzinfo=UTC) if system in ("gradescope", "sakai") else START.astimezone(UTC)
+        assert time.startswith(f"{zoned:%Y-%m-%d %H:%M}" if timed else "") and timed == bool(time)
         assert theirs == mine, student
     assert not accounted(files, outcome)
     assert not [one for left in outcome.left.values() for one in left if one.look]
@@ -271,6 +274,21 @@ def test_two_people_of_one_name_in_moodle_stop_alone_and_the_worksheet_tells_the
     assert submitted() == {"kim1": work("kim1"), "kim2": work("kim2"), by_name(ODD[0]): work(ODD[0].login)}
 
 
+def test_one_name_under_two_numbers_is_nobody_even_where_the_list_has_it_once(course, submitted, work, tmp_path):
+    twins = [Student("Kim", "Lee", "kim1", 1), Student("Kim", "Lee", "kim2", 2)]
+    files = downloads.moodle({s: [Attempt(work(s.login))] for s in [*twins, ODD[0]]})
+    collect(course, [packed(tmp_path / "a.zip", files)], [write_list(tmp_path / "list.csv", [twins[0], ODD[0]])])
+    assert set(submitted()) == {ODD[0].login}
+
+
+def test_a_name_that_all_have_is_the_word_for_participant(course, submitted, work, tmp_path):
+    files = downloads.moodle({s: [Attempt(work(s.login))] for s in ODD[:2]}, who=lambda _: "Osaleja")
+    outcome = collect(course, [packed(tmp_path / "a.zip", files)])
+    assert submitted() == {}
+    whose = {one.whose for some in outcome.left.values() for one in some}
+    assert whose == {"no. 1048288", "no. 1048291"}
+
+
 def test_moodles_groups(course, submitted, work, tmp_path):
     old = {"Team A-Ana García-Núñez_17_assignsubmission_file_/1_rotation.ipynb": work("a")["1_rotation.ipynb"]}
     new = {
@@ -336,7 +354,8 @@ def test_gradescopes_groups_and_those_without_anybody(course, submitted, work, t
 
 def test_ilias_makes_two_files_of_one_only_where_they_are_two(course, submitted, work, tmp_path):
     work_of = [Attempt(work("old", "1_rotation"), late=False), Attempt(work("new", "1_rotation"), late=True)]
-    collect(course, [packed(tmp_path / "a.zip", downloads.ilias({ODD[0]: work_of}))])
+    outcome = collect(course, [packed(tmp_path / "a.zip", downloads.ilias({ODD[0]: work_of}))])
+    assert not outcome.came[0].look and outcome.came[0].late
     assert submitted() == {"agarcia": work("new", "1_rotation")}
 
 
@@ -358,7 +377,7 @@ def test_sakais_groups_and_anonymous_folders(course, submitted, work, tmp_path):
     }
     outcome = collect(course, [packed(tmp_path / "a.zip", files)])
     assert set(submitted()) == {"agarcia", "pobrien"} and not accounted(files, outcome)
-    assert downloads.UUID in next(one.why for some in outcome.left.values() for one in some if one.look)
+    assert downloads.UUID in next(one.whose for some in outcome.left.values() for one in some if one.look)
 
 
 def test_edx_names_nobody_by_32_digits(course, submitted, work, tmp_path):
