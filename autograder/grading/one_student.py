@@ -37,7 +37,7 @@ def check_files(course, paths, seed=None, isolated=True):
             released, content = course.notebooks[name], submission.files.get(f"{name}.ipynb")
             if content is None:
                 says = f"There is no {name}.ipynb to grade."
-                found += [(row, Verdict(row.exercise, row.status, says=says)) for row in missing(released)]
+                found += [(row, Verdict(row.exercise, row.status, done=False, says=says)) for row in missing(released)]
                 continue
             intake = restore(content, released)
             verdicts = grade_notebook(intake, released, against, sandbox, submission)
@@ -71,7 +71,7 @@ def _submission(course, paths):
         else:
             beside[path.name] = content
     notebooks = {f"{name}.ipynb": content for name, content in taken.notebooks.items()}
-    return Submission("", notebooks | taken.helpers | beside, tuple(problems)), list(taken.notebooks), refused
+    return Submission("", beside | taken.helpers | notebooks, tuple(problems)), list(taken.notebooks), refused
 
 
 def points(found):

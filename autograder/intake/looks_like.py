@@ -31,6 +31,9 @@ TEXTS = (
         "a pointer of Git LFS, and not the file",
         PULL.format("git lfs pull"),
     ),
+    (r"diff --git |--- a/|Index: ", "a list of changes (a diff), and not the file", AGAIN),
+    (r"https?://\S+\s*$", "a link, and not the file it leads to", AGAIN),
+    (r"MIME-Version: |From: <Saved by ", "a web page or a mail, as a program keeps it", AGAIN),
     (r"\S*annex/objects/", "a pointer of git-annex, and not the file", PULL.format("git annex get")),
     (r"\[InternetShortcut\]|\[Desktop Entry\]", "a shortcut, and not the file it leads to", AGAIN),
     (r"<.{,200}?<!doctype plist|<!doctype plist", "a shortcut of macOS, and not the file it leads to", AGAIN),
@@ -52,7 +55,10 @@ def what_it_is(content: bytes, text: str, found: object) -> str:
     for beginning, name in BEGINNINGS:
         if content.startswith(beginning):
             return f"it is {name}; {AGAIN}"
-    if not isinstance(found, Exception):
+    if content[257:262] == b"ustar":
+        return f"it is a tar archive; {AGAIN}"
+    text = text.lstrip("\ufeff \t\r\n")
+    if isinstance(found, (dict, list)):
         return _other_json(found)
     if marks := [number for number, line in enumerate(text.split("\n"), 1) if CONFLICT.match(line)]:
         lines = ", ".join(map(str, marks[:6])) + (" …" if marks[6:] else "")
@@ -60,28 +66,29 @@ def what_it_is(content: bytes, text: str, found: object) -> str:
             f"a merge has left its conflict marks in it (lines {lines}): open it as text, decide for one side, take the "
             "marks out, and see whether Jupyter opens it; then hand it in again"
         )
-    text = text.lstrip("\ufeff \t\r\n")
     for pattern, name, advice in TEXTS:
         if re.match(pattern, text, re.IGNORECASE | re.DOTALL):
             return f"it is {name}; {advice}"
-    if text[:1] in "{[":
-        where = getattr(found, "pos", 0)
-        if isinstance(found, ValueError) and (where >= len(text.rstrip()) - 6 or "Unterminated" in str(found)):
-            return (
-                f"it is cut off after {len(content)} bytes; download or copy it again, see whether Jupyter opens it, and "
-                "hand that in"
-            )
-        line = f" in line {text.count(chr(10), 0, where) + 1}" if isinstance(found, ValueError) else ""
-        return f"it is damaged{line}, and Jupyter does not open it either; {AGAIN}"
-    if _is_python(text):
-        return f"it is a Python program, and no notebook; {AGAIN}"
+    if re.match(r"\{|\[\s*[\[{]", text):
+        return _damaged(content, text, found)
     if re.search(CELL_AS_TEXT, text[:20_000], re.MULTILINE):
         return (
             f"it is a notebook written as text (Markdown); turn it into one with `jupytext --to notebook`, or {AGAIN}"
         )
+    if _is_python(text):
+        return f"it is a Python program, and no notebook; {AGAIN}"
     if len(re.findall("[\x00-\x08\x0e-\x1a\ufffd]", text)) > len(text) / 50:
         return f"it is no text, so it cannot be a notebook; {AGAIN}"
     return f"it is a text, and no notebook; {AGAIN}"
+
+
+def _damaged(content, text, error):
+    where = getattr(error, "pos", 0)
+    if isinstance(error, ValueError) and (where >= len(text.rstrip()) - 6 or "Unterminated" in str(error)):
+        size = len(content)
+        return f"it is cut off after {size} bytes; download or copy it again, see whether Jupyter opens it, and hand that in"
+    line = f" in line {text.count(chr(10), 0, where) + 1}" if isinstance(error, ValueError) else ""
+    return f"it is damaged{line}, and Jupyter does not open it either; {AGAIN}"
 
 
 def _other_json(found):
@@ -100,6 +107,7 @@ def _other_json(found):
             "reason",
             "status",
             "documentation_url",
+            "traceback",
         }:
             return f"it is a server's message that something went wrong, and not the file; {AGAIN}"
     return f"it is JSON that holds something else than a notebook; {AGAIN}"
@@ -111,5 +119,6 @@ def _is_python(text):
             warnings.simplefilter("ignore")
             tree = ast.parse(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return re.search(r"^(def|import|from|class) \w+|^# (%%|In\[)", text, re.MULTILINE) is not None
+        code = r"^(?:def \w+\(.*|class \w+.*:|import [\w.]+(?: as \w+)?|from [\w.]+ import .*|# ?%%.*|# In\[.*)$"
+        return re.search(code, text, re.MULTILINE) is not None
     return any(isinstance(node, (ast.FunctionDef, ast.Import, ast.ImportFrom, ast.ClassDef)) for node in tree.body)

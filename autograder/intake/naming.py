@@ -6,11 +6,10 @@
 
 import re
 import unicodedata
-from collections import Counter
 from collections.abc import Iterable, Mapping
 
 from ..released import Released
-from .python_text import binds, checks
+from .python_text import checks, defines
 from .reading import Cell, Unreadable, cells
 
 # What a notebook's file ends in, also where a browser or a mail program has put its own ending behind.
@@ -71,12 +70,13 @@ def meant(found: Iterable[Cell], notebooks: Mapping[str, Released]) -> str | Non
     """As `by_cells`, of cells that are read already."""
     entries = {cell.entry.get("grade_id") for cell in found}
     counts = {name: len(entries & set(released.cells)) for name, released in notebooks.items()}
-    if not any(counts.values()):  # without nbgrader's entries: by what is checked and defined
-        names: Counter = Counter()
-        for cell in found:
-            if cell.kind == "code":
-                names.update({*checks(cell.source)[0], *binds(cell.source)})
-        counts = {name: len(names.keys() & set(released.points)) for name, released in notebooks.items()}
+    if not any(counts.values()):  # without nbgrader's entries: by what is checked
+        names = {name for cell in found for name in checks(cell.source)[0]}
+        counts = {name: len(names & set(released.points)) for name, released in notebooks.items()}
+    if not any(counts.values()):  # by what is defined, when that is half of a notebook at least
+        names = {name for cell in found for name in defines(cell.source)}
+        counts = {name: len(names & set(released.points)) for name, released in notebooks.items()}
+        counts = {name: count for name, count in counts.items() if 2 * count >= len(notebooks[name].points)}
     most = sorted(counts.values(), reverse=True)
     if not most or not most[0] or most[1:2] == most[:1]:
         return None
@@ -84,6 +84,11 @@ def meant(found: Iterable[Cell], notebooks: Mapping[str, Released]) -> str | Non
 
 
 def has_work(found: Iterable[Cell], released: Released) -> bool:
-    """Whether any cell has a text that was not given out."""
+    """Whether any answer was given: a solution's or an answer's cell changed, or a function of an exercise defined."""
     given = {cell.source.strip() for cell in released.notebook.cells}
-    return any(cell.source.strip() not in given for cell in found if cell.source.strip())
+    answers = {name for name, cell in released.cells.items() if cell.metadata.nbgrader.solution}
+    return any(
+        cell.entry.get("grade_id") in answers or not released.points.keys().isdisjoint(defines(cell.source))
+        for cell in found
+        if cell.source.strip() and cell.source.strip() not in given
+    )

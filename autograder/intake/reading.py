@@ -5,6 +5,7 @@ Of a file only its cells are kept, and of a cell its type, its source, its attac
 """
 
 import json
+import re
 from dataclasses import dataclass, field
 
 from ..untrusted import printable
@@ -15,6 +16,7 @@ LARGEST_TEXT = 20_000_000  # characters of what is kept; of a released notebook 
 MOST_CELLS = 2_000
 LONGEST_INTEGER = 400  # digits; a float has 309 at most
 ENTRY = ("grade_id", "points", "grade", "solution", "locked", "task", "checksum", "cell_type", "schema_version")
+BEGINNING = re.compile(r'\{\s*"(?:cells|metadata|nbformat|nbformat_minor|worksheets)"\s*:')  # as notebooks begin
 TEXT = ("markdown", "raw", "heading", "html")  # pages show raw cells unfiltered, so they are Markdown to us
 
 
@@ -65,8 +67,11 @@ def _cells(content):
     except UnicodeDecodeError:
         text = content.decode("cp1252", "replace")  # an editor that was told to save it so
     decoder = json.JSONDecoder(object_hook=_without_outputs, parse_int=_integer, strict=False)
+    start = text.lstrip("\ufeff \t\r\n")
+    if start[:1] != "{" and (found := BEGINNING.search(start)):  # below a line that some program has put in front
+        start = start[found.start() :]
     try:
-        raw = decoder.raw_decode(text.lstrip("\ufeff \t\r\n"))[0]  # what follows is left from an interrupted editor
+        raw = decoder.raw_decode(start)[0]  # what follows is left from an editor that was interrupted
     except (ValueError, RecursionError) as error:
         raise Unreadable(what_it_is(content, text, error)) from None
     if isinstance(raw, dict) and raw.get("type") == "notebook" and isinstance(raw.get("content"), dict):
@@ -123,7 +128,7 @@ def _text(source, between="\n"):
         source = ends.join(lines)
     elif not isinstance(source, (str, int, float)):
         source = ""
-    return printable(str(source)).replace("\r\n", "\n").replace("\r", "\n").replace("\0", "")
+    return printable(str(source)).replace("\r\n", "\n").replace("\r", "\n").replace("\0", "").lstrip("\ufeff")
 
 
 def _attachments(raw):

@@ -5,6 +5,7 @@ taken for what, and what was not, is said in words, each with what to do.
 """
 
 import difflib
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -13,9 +14,27 @@ from pathlib import PurePosixPath
 from ..released import Released
 from .archive import Refused, contents
 from .naming import by_name, has_work, is_notebook, meant
+from .python_text import checks
 from .reading import LARGEST, Unreadable, cells
 
 PACKAGE = "transform_lab"  # the students' package: nobody's work, and the grader uses the course's own
+RECEIPTS = ("timestamp.txt", "submission_secret.txt")  # nbgrader's
+ZIPPED = (
+    ".docx",
+    ".xlsx",
+    ".pptx",
+    ".odt",
+    ".ods",
+    ".odp",
+    ".jar",
+    ".whl",
+    ".npz",
+    ".pages",
+    ".numbers",
+    ".key",
+    ".epub",
+)
+MOST_LINES = 20  # about files that are no notebooks
 PACKED = (".7z", ".rar", ".tar", ".gz", ".tgz", ".bz2", ".xz")
 MOST_NOTEBOOKS, LARGEST_NOTEBOOKS = 100, 2 * LARGEST  # that are looked into, under whatever name; bytes of all of them
 MOST_FILES, LARGEST_FILES = 200, 4_000_000  # handed in besides the notebooks; bytes of all of them
@@ -69,10 +88,20 @@ class Candidate:
     @cached_property
     def work(self):
         """Whether anything was written in it."""
+        return has_work(self.cells, self.released)
+
+    @cached_property
+    def cells(self):
         try:
-            return has_work(cells(self.content), self.released)
+            return cells(self.content)
         except Unreadable:
-            return False
+            return []
+
+    def holds(self, released):
+        """Whether cells of another notebook stand in it, too, as nbgrader or their own call of `check` says."""
+        known = {cell.entry.get("grade_id") for cell in self.cells}
+        known.update(name for cell in self.cells for name in checks(cell.source)[0])
+        return not known.isdisjoint(released.cells)
 
     @property
     def rank(self):
@@ -88,32 +117,30 @@ def sort(files: Mapping[str, bytes], notebooks: Mapping[str, Released]) -> Sorte
     everything = _unpacked(files, zips, found.problems)
     candidates: list[Candidate] = []
     for path, content in everything.items():
-        if _may_be_notebook(path, content, notebooks):
+        if _may_be_notebook(path, content):
             if len(candidates) == MOST_NOTEBOOKS:
                 found.problems.append(f"{path}: left out; at most {MOST_NOTEBOOKS} notebooks are looked into.")
             elif candidate := _candidate(path, content, notebooks, found.problems):
                 candidates.append(candidate)
     chosen = _choose(candidates, notebooks, found)
+    _look_for_more(candidates, notebooks, chosen, found)
     found.sources = {name: zips.get(path, path) for name, path in chosen.items()}
     root = _root(chosen.values())
     if root and root not in {_folder(path) for path in zips}:
         found.problems.append(f"{root}/: the notebooks were taken from this folder.")
-    for path, content in everything.items():
-        if path.lower().endswith(PACKED):
-            found.problems.append(f"{path}: it was not opened; hand in the files themselves, or a zip of them.")
-        elif not is_notebook(path):
-            found.helpers[path.removeprefix(f"{root}/") if root else path] = content
-            name = by_name(PurePosixPath(path).stem, notebooks)
-            if name and name[0] not in chosen and not _may_be_notebook(path, content, notebooks):
-                found.problems.append(f"{path}: it is not the notebook; hand in {name[0]}.ipynb itself.")
+    others = {path: content for path, content in everything.items() if path not in chosen.values()}
+    about = [line for path, content in others.items() for line in _about_file(path, content, notebooks, chosen)]
+    found.problems += about[:MOST_LINES]
+    helpers = {path: content for path, content in others.items() if not is_notebook(path)}
+    found.helpers = _helpers(helpers, chosen.values(), root, found.problems)
     return found
 
 
 def _unpacked(files, zips, problems):
     """The files, and in the place of each zip file what is in it; `zips` is told which file came out of which."""
-    everything = {path: content for path, content in files.items() if not _is_zip(path)}
+    everything = {path: content for path, content in files.items() if not _is_zip(path, content)}
     for path, content in files.items():
-        if _is_zip(path):
+        if _is_zip(path, content):
             try:
                 inside, odd = contents(content)
             except Refused as refused:
@@ -125,10 +152,10 @@ def _unpacked(files, zips, problems):
             room = Room(MOST_FILES, LARGEST_FILES)
             for name, entry in taken.items():
                 unpacked = str(PurePosixPath(path).parent / name)
-                if _is_zip(name):
+                if unpacked in everything:
+                    unpacked = f"{path}/{name}"  # so that the one with work in it may be chosen
+                if _is_zip(name, entry):
                     problems.append(f"{path}: {name}: a zip in a zip was not unpacked; hand in the files themselves.")
-                elif unpacked in everything:
-                    problems.append(f"{path}: {name}: left out; the file beside the zip was taken.")
                 elif not is_notebook(name) and not room.takes(entry):
                     problems.append(
                         f"{path}: {name}: left out; the files besides notebooks are too many, or too large."
@@ -138,16 +165,48 @@ def _unpacked(files, zips, problems):
     return everything
 
 
-def _is_zip(path):
-    return path.lower().endswith(".zip")
-
-
-def _may_be_notebook(path, content, notebooks):
-    """By its name; or by its name without the ending, when it looks like one inside."""
-    inside = content[:1_000_000].lstrip(b"\xef\xbb\xbf \t\r\n")
-    return is_notebook(path) or (
-        inside.startswith(b"{") and b'"cells"' in inside and by_name(PurePosixPath(path).stem, notebooks) is not None
+def _is_zip(path, content):
+    """By its first bytes, whatever it is called; what other programs keep as a zip is none."""
+    suffix = PurePosixPath(path).suffix.lower()
+    return (content.startswith(b"PK") and suffix not in ZIPPED and not is_notebook(path)) or (
+        suffix == ".zip" and not _holds_cells(content)
     )
+
+
+def _holds_cells(content):
+    inside = content[:1_000_000].lstrip(b"\xef\xbb\xbf \t\r\n")
+    return inside.startswith(b"{") and b'"cells"' in inside
+
+
+def _may_be_notebook(path, content):
+    return is_notebook(path) or _holds_cells(content)
+
+
+def _about_file(path, content, notebooks, chosen):
+    """What is to be said of a file that is not graded as a notebook."""
+    if path.lower().endswith(PACKED):
+        return [f"{path}: it was not opened; hand in the files themselves, or a zip of them."]
+    name = by_name(PurePosixPath(path).stem, notebooks)
+    if name and name[0] not in chosen and not _may_be_notebook(path, content):
+        return [f"{path}: it is not the notebook; hand in {name[0]}.ipynb itself."]
+    if not chosen and path not in RECEIPTS and not _may_be_notebook(path, content):
+        return [f"{path}: not graded; it is no notebook."]
+    return []
+
+
+def _helpers(others, chosen, root, problems):
+    """{path: bytes} of what notebooks may import or read, as they find it: beside them, and by the name that they use."""
+    helpers = {path.removeprefix(f"{root}/") if root else path: content for path, content in others.items()}
+    for folder in sorted({_folder(path) for path in chosen} - {root, ""}):
+        for path, content in others.items():
+            if path.startswith(f"{folder}/"):
+                helpers.setdefault(path.removeprefix(f"{folder}/"), content)
+    for path in [path for path in helpers if path.endswith(".py")]:
+        meant = re.sub(r" ?\(\d+\)\.py$|-Copy\d+\.py$", ".py", path)
+        if meant != path and meant not in helpers:
+            helpers[meant] = helpers[path]
+            problems.append(f"{path}: it was taken for {meant}, too; that is what it should be called.")
+    return helpers
 
 
 def _candidate(path, content, notebooks, problems):
@@ -193,8 +252,22 @@ def _choose(candidates, notebooks, found):
             found.problems.append(f"{best.path}: it was taken for {name}.ipynb; that is what it should be called.")
         for other in found_for:
             if other.content != best.content:
-                found.problems.append(f"{other.path}: not graded; {best.path} is the same notebook and was graded.")
+                found.problems.append(
+                    f"{other.path}: not graded; of {name}.ipynb, {best.path} was. Hand in the one that counts alone."
+                )
     return chosen
+
+
+def _look_for_more(candidates, notebooks, chosen, found):
+    """A notebook that came in no file of its own, and whose cells stand in another's."""
+    for name, released in notebooks.items():
+        holds = [one for one in candidates if name not in chosen and one.holds(released)]
+        if holds:
+            best = max(holds, key=lambda one: one.rank)
+            chosen[name], found.notebooks[name] = best.path, best.content
+            found.problems.append(
+                f"{best.path}: the cells of {name} stand in it, too, and were graded as {name}.ipynb."
+            )
 
 
 def _root(paths):

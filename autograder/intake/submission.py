@@ -15,6 +15,7 @@ import dateutil.parser
 
 from ..course import Course
 from ..untrusted import printable
+from .archive import UNPRINTABLE
 from .naming import is_notebook
 from .reading import LARGEST
 from .sorting import LARGEST_FILES, LARGEST_NOTEBOOKS, MOST_FILES, MOST_NOTEBOOKS, PACKAGE, Room, sort
@@ -35,7 +36,9 @@ class Submission:
     @property
     def helpers(self) -> dict[str, bytes]:
         """The files that notebooks may import or read."""
-        return {path: content for path, content in self.files.items() if not path.endswith(".ipynb")}
+        helpers = {path: content for path, content in self.files.items() if not path.endswith(".ipynb")}
+        runs_others = any(b"%run" in content and b".ipynb" in content for content in self.files.values())
+        return self.files if runs_others else helpers
 
     @property
     def digest(self) -> str:
@@ -55,7 +58,7 @@ def submission_of(course: Course, student: str, folder: Path | None = None) -> S
     absent = [NOT_HANDED_IN.format(f"{name}.ipynb") for name in course.notebooks if name not in sorted_files.notebooks]
     known_by, odd = receipts(folder)
     problems += [*sorted_files.problems, *absent, *([odd] if odd else [])]
-    return Submission(student, files | sorted_files.helpers, tuple(problems), known_by)
+    return Submission(student, sorted_files.helpers | files, tuple(problems), known_by)
 
 
 def _files(folder, course, problems):
@@ -64,7 +67,7 @@ def _files(folder, course, problems):
     folders: set[str] = set()
     rooms = {True: Room(MOST_NOTEBOOKS, LARGEST_NOTEBOOKS), False: Room(MOST_FILES, LARGEST_FILES)}
     for path in _paths(folder, course, problems):
-        relative = PurePosixPath(printable(path.relative_to(folder).as_posix()))
+        relative = PurePosixPath(UNPRINTABLE.sub("_", printable(path.relative_to(folder).as_posix())))
         name, above = str(relative), {str(parent) for parent in relative.parents}
         large = is_notebook(name) or name.lower().endswith(".zip")
         room = rooms[large]

@@ -128,7 +128,7 @@ def test_of_several_files_for_one_notebook(released_here):
     copies = {"1_rotation (2).ipynb": second, "1_rotation (10).ipynb": third, "1_rotation (1).ipynb": first}
     found = sort(copies, released_here.notebooks)
     assert found.sources == {ONE: "1_rotation (10).ipynb"} and found.notebooks == {ONE: third}
-    assert sum("1_rotation (10).ipynb is the same notebook and was graded" in line for line in found.problems) == 2
+    assert sum("not graded; of 1_rotation.ipynb, 1_rotation (10).ipynb was" in line for line in found.problems) == 2
     found = sort(copies | {"1_rotation.ipynb": first}, released_here.notebooks)
     assert found.sources == {ONE: "1_rotation.ipynb"}  # its own name, and there is work in it
     for empty in (untouched(ONE), b""):
@@ -196,7 +196,7 @@ def test_helpers_lie_beside_the_notebooks(released_here):
     assert sorted(sort(files, released_here.notebooks).helpers) == ["lib/mine.py", "top.txt"]
     apart = {"a/1_rotation.ipynb": work(ONE), "b/3_chaining.ipynb": work(THREE), "b/mine.py": b""}
     found = sort(apart, released_here.notebooks)
-    assert set(found.notebooks) == {ONE, THREE} and list(found.helpers) == ["b/mine.py"]
+    assert set(found.notebooks) == {ONE, THREE} and list(found.helpers) == ["b/mine.py", "mine.py"]
 
 
 def test_a_new_name_is_a_change(released_here, tmp_path):
@@ -276,3 +276,86 @@ def test_check_goes_by_the_same_rules(released_here, tmp_path, sandboxed):
     ]
     found, refused, _ = check_files(released_here, [tmp_path], seed=7)
     assert sum(row.score for row, _ in found) == points(ONE, THREE) and refused == []
+
+
+# --- what outside testers found -----------------------------------------------------------------------------------------
+
+
+def changed(name, **sources):
+    """The released notebook, in which cells have other texts: {the cell's name with _ for -: text}, or `first`."""
+    raw = json.loads(untouched(name))
+    for cell in raw["cells"]:
+        entry = cell["metadata"].get("nbgrader", {}).get("grade_id", "").replace("-", "_")
+        cell["source"] = sources.get(entry, cell["source"])
+    raw["cells"][0]["source"] = sources.get("first", raw["cells"][0]["source"])
+    return json.dumps(raw).encode()
+
+
+def test_work_in_a_zip_counts_before_an_untouched_notebook_beside_it(released_here):
+    solved = work(THREE)
+    for files in (
+        {"3_chaining.ipynb": untouched(THREE), "work.zip": packed({"3_chaining.ipynb": solved})},
+        {"a.zip": packed({"3_chaining.ipynb": untouched(THREE)}), "b.zip": packed({"3_chaining.ipynb": solved})},
+        {"a.zip": packed({"3_chaining.ipynb": solved}), "b.zip": packed({"3_chaining.ipynb": untouched(THREE)})},
+    ):
+        assert sort(files, released_here.notebooks).notebooks == {THREE: solved}
+
+
+def test_a_name_in_the_title_is_no_work(released_here):
+    named = changed(THREE, first="# 3 Chaining - Jane Doe")
+    files = {"3_chaining.ipynb": named, "3_chaining (1).ipynb": work(THREE)}
+    assert sort(files, released_here.notebooks).sources == {THREE: "3_chaining (1).ipynb"}
+
+
+def test_all_notebooks_in_one_file(released_here):
+    raw = {"cells": [cell for name in ASKED for cell in solution(name)["cells"]]}
+    content = json.dumps(raw).encode()
+    for path in ("all.ipynb", "1_rotation.ipynb"):
+        found = sort({path: content}, released_here.notebooks)
+        assert set(found.notebooks) == set(ASKED)
+        assert sum("stand in it, too, and were graded as" in line for line in found.problems) == len(ASKED) - 1
+    both = json.dumps({"cells": [*solution(THREE)["cells"], *solution("4_inversion")["cells"]]}).encode()
+    found = sort({"3_chaining.ipynb": both, "4_inversion.ipynb": work("4_inversion")}, released_here.notebooks)
+    assert found.notebooks["4_inversion"] == work("4_inversion")
+
+
+@pytest.mark.parametrize("name", ["homework.json", "homework.txt", "homework", "submission.ipynb.bak"])
+def test_a_notebook_under_a_name_of_another_kind(released_here, name):
+    assert sort({name: work(ONE)}, released_here.notebooks).notebooks == {ONE: work(ONE)}
+
+
+@pytest.mark.parametrize("name", ["submission", "work.zip (1)", "w.zipx", "1_rotation.zip"])
+def test_a_zip_under_a_name_of_another_kind(released_here, name):
+    assert sort({name: packed({"1_rotation.ipynb": work(ONE)})}, released_here.notebooks).notebooks == {ONE: work(ONE)}
+    assert sort({"1_rotation.zip": work(ONE)}, released_here.notebooks).notebooks == {ONE: work(ONE)}
+
+
+def test_where_nothing_is_a_notebook_each_file_is_named(released_here):
+    files = {"homework.py": b"x = 1", "Notebook.html": b"<html>", "w.txz": b"\xfd7z", "essay.docx": packed({"a": b""})}
+    said = sort(files, released_here.notebooks).problems
+    assert all(any(line.startswith(f"{name}: ") for line in said) for name in files)
+
+
+def test_a_helper_that_was_downloaded_twice(released_here):
+    found = sort({"1_rotation.ipynb": work(ONE), "mine (1).py": b"x = 1"}, released_here.notebooks)
+    assert found.helpers == {"mine (1).py": b"x = 1", "mine.py": b"x = 1"}
+    assert found.problems == ["mine (1).py: it was taken for mine.py, too; that is what it should be called."]
+
+
+def test_notebooks_that_run_others(released_here, tmp_path):
+    raw = solution(THREE)
+    (tmp_path / "1_rotation.ipynb").write_bytes(work(ONE))
+    assert submission_of(released_here, "", tmp_path).helpers == {}
+    raw["cells"].insert(2, {"cell_type": "code", "metadata": {}, "source": "%run 1_rotation.ipynb"})
+    (tmp_path / "3_chaining.ipynb").write_text(json.dumps(raw))
+    assert "1_rotation.ipynb" in submission_of(released_here, "", tmp_path).helpers
+
+
+def test_a_notebook_of_one_s_own_that_defines_a_function_is_not_the_assignment_s(released_here):
+    own = json.dumps({"cells": [{"cell_type": "code", "source": "def is_rotation(R):\n    return True"}]}).encode()
+    assert sort({"my_functions.ipynb": own}, released_here.notebooks).notebooks == {}
+
+
+def test_names_do_not_turn_the_line_they_stand_in(released_here, tmp_path):
+    (tmp_path / "a\u202eb.ipynb").write_bytes(b"x")
+    assert not [line for line in submission_of(released_here, "", tmp_path).problems if "\u202e" in line]

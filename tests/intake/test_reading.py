@@ -229,8 +229,13 @@ def changed_files(draw):
                 cell.pop(field, None)
         if "nbgrader" not in metadata and draw(st.booleans()):
             cell["metadata"] = draw(VALUES.filter(lambda value: not isinstance(value, dict)))
+    raw = {field: raw[field] for field in draw(st.permutations(list(raw)))}
     text = json.dumps(raw, indent=draw(st.sampled_from([None, 1, "\t"])), ensure_ascii=True)
-    text = draw(st.sampled_from(["", "\n", " \t\r\n"])) + text + draw(st.sampled_from(["", "\n", "\n}]}", "\0\0"]))
+    text = (
+        draw(st.sampled_from(["", "\n", " \t\r\n", "[I 12:00:00] Saving file\n"]))
+        + text
+        + draw(st.sampled_from(["", "\n", "\n}]}", "\0\0"]))
+    )
     return text.encode(draw(st.sampled_from(ENCODINGS))), name
 
 
@@ -326,7 +331,22 @@ NO_NOTEBOOKS = {
     "deep": (b"[" * 200_000, "damaged"),
     "list": (b"[]", "something else than a notebook"),
     "package": (b'{"name": "x", "dependencies": {}}', "something else than a notebook"),
-    "a number": (b"7", "something else than a notebook"),
+    "a number": (b"7", "it is a text"),
+    "numbered lines": (b"1. My solution: I multiply.\n2. And so on.", "it is a text"),
+    "error of a server": (b"404: Not Found", "it is a text"),
+    "program with a docstring": (b'"""My solution."""\nimport numpy as np\n', "a Python program"),
+    "diff": (b"diff --git a/3.ipynb b/3.ipynb\n--- a/3.ipynb\n+++ b/3.ipynb\n", "a diff"),
+    "link": (b"https://colab.research.google.com/drive/1A?usp=sharing\n", "a link"),
+    "link in Markdown": (b"[my notebook](https://colab.research.google.com/drive/1A)", "it is a text"),
+    "MHTML": (b"From: <Saved by Blink>\nMIME-Version: 1.0\n", "a web page or a mail"),
+    "tar": (b"3_chaining.ipynb".ljust(257, b"\0") + b"ustar\0" + bytes(500), "a tar archive"),
+    "mail": (b"Dear all,\nfrom my point of view it is right.\n", "it is a text"),
+    "500 of Jupyter": (b'{"message": "Unhandled error", "reason": null, "traceback": "x"}', "a server's message"),
+    "Markdown notebook with code": (
+        b"---\njupyter:\n  kernelspec:\n    name: python3\n---\n\n```python\nimport numpy as np\n```\n",
+        "jupytext",
+    ),
+    "Quarto": (b"# Words\n\n```{python}\nimport numpy as np\ndef f():\n    pass\n```\n", "jupytext"),
     "server's message": (b'{"message": "Not Found", "reason": null}', "a server's message"),
     "no cells": (b'{"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": []}', "without any cell"),
     "cells that are none": (b'{"nbformat": 4, "cells": "x"}', "cells are no list"),

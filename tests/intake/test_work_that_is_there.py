@@ -215,6 +215,89 @@ def all_moved_to_the_end(n):
     n.cells += [solution, check]
 
 
+def both_in_one_cell_and_the_checks_deleted(n):
+    both_in_one_cell(n)
+    n.drop("chain"), n.drop("transform_pose")
+
+
+def both_in_the_second_cell_and_a_check_deleted(n):
+    n["transform_pose-solution"]["source"] = RIGHT + "\n\n" + n["transform_pose-solution"]["source"]
+    n.drop("chain-solution"), n.drop("chain")
+
+
+def swapped_and_the_checks_deleted(n):
+    first, second = n["chain-solution"], n["transform_pose-solution"]
+    first["source"], second["source"] = second["source"], first["source"]
+    n.drop("chain"), n.drop("transform_pose")
+
+
+def everything_in_the_first_cell(n):
+    for name in ("chain", "transform_pose"):
+        n.cells[1]["source"] += "\n\n" + n[f"{name}-solution"]["source"]
+        n.drop(f"{name}-solution"), n.drop(name)
+
+
+def stripped_with_a_scratch_line_below(n):
+    n.strip()
+    n.insert(len(n.cells), "chain = chain(np.eye(4))")
+
+
+def stripped_with_an_experiment_below(n):
+    n.strip()
+    n.insert(len(n.cells), WRONG)
+
+
+def stub_kept_and_an_experiment_below(n):
+    solution_retyped_and_the_stub_kept(n)
+    n.insert(len(n.cells), WRONG)
+
+
+def retyped_and_a_loop_below(n):
+    solution_retyped(n)
+    n.insert(len(n.cells), "for chain in [1, 2]:\n    print(chain)")
+
+
+def stub_pasted_below_without_an_entry(n):
+    n.insert(n.place("chain-solution") + 1, released_text(n, "chain-solution"))
+
+
+def stub_with_a_comment_and_the_solution_below_the_check(n):
+    n["chain-solution"]["source"] = released_text(n, "chain-solution") + "\n    # todo"
+    n.insert(n.place("chain") + 1, RIGHT)
+    n.insert(n.place("chain") + 2, 'check("chain", chain)')
+
+
+def solution_with_its_check_below_the_check(n):
+    n["chain-solution"]["source"] = released_text(n, "chain-solution")
+    n.insert(n.place("chain") + 1, RIGHT + '\ncheck("chain", chain)')
+
+
+def solution_fenced(n):
+    n["chain-solution"].update(cell_type="markdown", source=f"My solution:\n\n```python\n{RIGHT}```\n\nIt multiplies.")
+
+
+def solution_fenced_in_a_new_cell(n):
+    n["chain-solution"]["source"] = released_text(n, "chain-solution")
+    n.insert(n.place("chain-solution") + 1, f"```python\n{RIGHT}```", "markdown")
+
+
+def solution_split(n):
+    lines = RIGHT.split("\n")
+    n["chain-solution"]["source"] = "\n".join(lines[:2])
+    n.insert(n.place("chain-solution") + 1, "\n".join(lines[2:]))
+
+
+def solution_split_with_both_entries(n):
+    solution_split(n)
+    n.cells[n.place("chain-solution") + 1]["metadata"] = {"nbgrader": entry(n["chain-solution"])}
+
+
+def solution_split_after_its_first_line(n):
+    lines = RIGHT.split("\n")
+    n["chain-solution"]["source"] = lines[0]
+    n.insert(n.place("chain-solution") + 1, "\n".join(lines[1:]))
+
+
 def released_text(n, name):
     return Course(ROOT).notebooks[n.name].cells[name].source
 
@@ -225,9 +308,15 @@ TOOLS = [
     solution_retyped_below, solution_retyped_and_the_stub_kept, solution_retyped_behind_the_check,
     solution_and_check_swapped, solution_as_text, retyped_solution_as_text, copied_before_it_was_written,
     copied_and_the_copy_written, copied_below_the_check, both_in_one_cell, both_in_one_cell_and_the_stub_kept,
-    under_a_magic, all_moved_to_the_end,
+    under_a_magic, all_moved_to_the_end, both_in_one_cell_and_the_checks_deleted,
+    both_in_the_second_cell_and_a_check_deleted, swapped_and_the_checks_deleted, everything_in_the_first_cell,
+    stripped_with_a_scratch_line_below, stripped_with_an_experiment_below, stub_kept_and_an_experiment_below,
+    retyped_and_a_loop_below, stub_pasted_below_without_an_entry,
+    stub_with_a_comment_and_the_solution_below_the_check, solution_with_its_check_below_the_check, solution_fenced,
+    solution_fenced_in_a_new_cell, solution_split, solution_split_with_both_entries,
+    solution_split_after_its_first_line,
 ]  # fmt: skip
-SILENT = {retyped, by_keywords, all_moved_to_the_end}
+SILENT = {retyped, by_keywords, all_moved_to_the_end, stub_pasted_below_without_an_entry}
 
 
 @pytest.mark.parametrize("tool", TOOLS, ids=lambda tool: tool.__name__)
@@ -319,6 +408,24 @@ def test_an_experiment_below_does_not_count(course):
     assert judged(intake, "chain") == notebook["chain-solution"]["source"] and intake.problems == []
 
 
+def test_a_function_from_where_its_name_is_not_seen(course):
+    notebook = Notebook(NAME)
+    notebook.insert(notebook.place("chain") + 1, "from mine import *")
+    notebook.drop("chain"), notebook.drop("chain-solution")
+    intake = notebook.restored(course)
+    assert intake.statuses == {}
+    above = intake.notebook.cells[intake.notebook.cells.index(named(intake, "chain")) - 1]
+    assert above.source == "from mine import *"
+
+
+@pytest.mark.parametrize("source", ["chain = np.eye(4)", "from itertools import chain", "for chain in []:\n    pass"])
+def test_another_use_of_the_name_is_no_solution(course, source):
+    notebook = Notebook(NAME, json.loads(course.notebooks[NAME].text))
+    notebook.insert(1, source)
+    intake = notebook.restored(course)
+    assert intake.problems == [] and "raise NotImplementedError" in judged(intake, "chain")
+
+
 def test_what_was_not_done_stays_not_done(course):
     notebook = Notebook(NAME, json.loads(course.notebooks[NAME].text))
     for tool in (deleted, all_stripped):
@@ -397,12 +504,59 @@ def answer_as_a_code_cell(n):
     n[QUESTION].update(cell_type="code", source=WORDS)
 
 
+def answer_at_the_end(n):
+    unanswered(n)
+    n.insert(len(n.cells), f"## Question: which way is up?\n\n{WORDS}", "markdown")
+
+
+def answer_at_the_top(n):
+    unanswered(n)
+    n.insert(1, f"Which way is up? {WORDS}", "markdown")
+
+
+def answer_behind_the_next_heading(n):
+    unanswered(n)
+    n.insert(n.place(QUESTION) + 2, WORDS, "markdown")
+
+
+def answer_shown_by_code(n):
+    unanswered(n)
+    n.insert(len(n.cells), f"from IPython.display import Markdown\nMarkdown('''{WORDS}''')", "code")
+
+
+def answer_in_a_comment(n):
+    unanswered(n)
+    n["waypoint-solution"]["source"] += f"\n# Answer: {WORDS}"
+
+
+def answer_above_its_heading(n):
+    unanswered(n)
+    n.cells[n.place(QUESTION) - 2]["source"] += f"\n# Question: {WORDS}"
+
+
+def answer_as_a_picture(n):
+    n[QUESTION]["source"] = released_text(n, QUESTION)
+    n[QUESTION]["attachments"] = {"hand.png": {"image/png": "aGFuZA=="}}
+
+
+def answer_as_a_picture_below(n):
+    unanswered(n)
+    n.insert(n.place(QUESTION) + 1, "", "markdown")
+    n.cells[n.place(QUESTION) + 1]["attachments"] = {"hand.png": {"image/png": "aGFuZA=="}}
+
+
 ANSWERS = [
     answer_stripped, answer_before_an_untouched_copy, answer_behind_an_untouched_copy, answer_in_a_new_cell_below,
     answer_in_a_new_cell_above, answer_in_a_raw_cell, answer_in_two_cells, answer_as_code, answer_below_its_question,
-    answer_cell_retyped, answer_cell_deleted, answer_emptied, answer_as_a_code_cell,
+    answer_cell_retyped, answer_cell_deleted, answer_emptied, answer_as_a_code_cell, answer_at_the_end,
+    answer_at_the_top, answer_behind_the_next_heading, answer_shown_by_code, answer_in_a_comment,
+    answer_above_its_heading, answer_as_a_picture, answer_as_a_picture_below,
 ]  # fmt: skip
-BESIDE = {answer_in_two_cells, answer_as_code}
+BESIDE = {
+    answer_in_two_cells, answer_as_code, answer_at_the_end, answer_at_the_top, answer_behind_the_next_heading,
+    answer_shown_by_code, answer_in_a_comment, answer_above_its_heading,
+}  # fmt: skip
+PICTURES = {answer_as_a_picture, answer_as_a_picture_below}
 
 
 @pytest.mark.parametrize("tool", ANSWERS, ids=lambda tool: tool.__name__)
@@ -414,15 +568,17 @@ def test_a_person_reads_what_was_written(course, tool):
     assert found.scores[QUESTION] is None and found.comments[QUESTION] is None
     answer, everything = named(intake, QUESTION), [cell.source for cell in intake.notebook.cells]
     if tool in BESIDE:
-        assert "stands beside it" in answer.source
+        assert "written elsewhere" in answer.source and WORDS in answer.source
         assert any(WORDS in source for source in everything)
+    elif tool in PICTURES:
+        assert "![hand.png](<attachment:hand.png>)" in answer.source and "hand.png" in answer.attachments
     elif tool is answer_cell_deleted:
         assert "The grader has added it" in answer.source
         assert "Question: which way is up?" in everything[everything.index(answer.source) - 1]
     elif tool is not answer_emptied:
         assert answer.source.endswith(WORDS) and sum(WORDS in source for source in everything) == 1
         assert sum("YOUR ANSWER HERE" in source for source in everything) == 0
-    assert intake.problems or tool is answer_emptied
+    assert intake.problems or tool in (answer_emptied, answer_as_a_picture)
 
 
 @pytest.mark.parametrize("tool", [unanswered, lambda n: (unanswered(n), n.strip())], ids=["as given", "stripped"])
@@ -447,5 +603,6 @@ def test_a_note_elsewhere_is_no_answer(course):
     notebook = Notebook(ANSWERED)
     unanswered(notebook)
     notebook.insert(3, "My notes.", "markdown")
-    notebook.insert(len(notebook.cells), "More notes.", "markdown")
+    notebook.insert(5, "x = 1  # to try it", "code")
+    notebook.insert(len(notebook.cells), "print(1)", "code")
     assert marks(notebook.restored(course).notebook).scores[QUESTION] == 0
