@@ -319,7 +319,10 @@ def grade(options):
             f"{student}: no submission in submitted/{student}/{ASSIGNMENT}.{_meant(student, students)}", markup=False
         )
     for student in here.astray() if not options.students else ():
-        errors.print(f"{student}: not graded: its files have to be in submitted/{student}/{ASSIGNMENT}/.", markup=False)
+        errors.print(
+            f"{student}: not graded: its files have to be in submitted/{Path(student).stem}/{ASSIGNMENT}/.",
+            markup=False,
+        )
     with Cluster(options.scheduler) if options.scheduler else nullcontext() as cluster:
         failed = _grade(
             here,

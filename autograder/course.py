@@ -85,8 +85,9 @@ class Course:
         return sorted(name for name in self._folders() if self.submitted(name).is_dir())
 
     def astray(self) -> list[str]:
-        """The folders below submitted/ that hold no submission of this assignment."""
-        return sorted(name for name in self._folders() if not self.submitted(name).is_dir())
+        """What lies in submitted/ and is no student's folder with a submission of this assignment in it."""
+        there = (path.name for path in (self.root / "submitted").iterdir() if not path.name.startswith("."))
+        return sorted(name for name in there if not self.submitted(name).is_dir())
 
     def _folders(self):
         folders = (self.root / "submitted").iterdir()

@@ -37,7 +37,7 @@ def check_files(course, paths, seed=None, isolated=True):
             released, content = course.notebooks[name], submission.files.get(f"{name}.ipynb")
             if content is None:
                 says = f"There is no {name}.ipynb to grade."
-                found += [(row, Verdict(row.exercise, row.status, done=False, says=says)) for row in missing(released)]
+                found += [(row, Verdict(row.exercise, row.status, says=says)) for row in missing(released)]
                 continue
             intake = restore(content, released)
             verdicts = grade_notebook(intake, released, against, sandbox, submission)
@@ -62,7 +62,8 @@ def _submission(course, paths):
     for path in files.keys() - set(taken.sources.values()):
         lines = [line for line in taken.problems if line.startswith(f"{path}: ")]
         refused += lines or [f"{path}: it is no notebook of this assignment; there are {', '.join(course.notebooks)}."]
-    problems = [line for line in taken.problems if line not in refused]
+    of_folder = f"{Path(next(iter(taken.sources.values()), '')).parent}/: "  # which was given with the files
+    problems = [line for line in taken.problems if line not in refused and not line.startswith(of_folder)]
     beside = {}
     for path in sorted(Path(next(iter(taken.sources.values()))).parent.glob("*.py")) if taken.sources else ():
         content, problem = read(path)

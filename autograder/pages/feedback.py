@@ -100,7 +100,12 @@ def summary(course, student, grades):
         _notebook(released, grades.get(name, NotebookGrades()), records.get(name))
         for name, released in course.notebooks.items()
     ]
-    wrong = (cell for notebook in notebooks for cell in notebook["exercises"] if cell["link"] and not cell["right"])
+    wrong = (
+        cell
+        for notebook in notebooks
+        for cell in notebook["exercises"]
+        if cell["link"] and not cell["right"] and not notebook["unreadable"]
+    )
     template = environment().get_template("summary.html")
     return template.render(
         assignment=ASSIGNMENT,
@@ -109,6 +114,7 @@ def summary(course, student, grades):
         most=sum(notebook["most"] for notebook in notebooks),
         waiting=sum(cell["waiting"] for notebook in notebooks for cell in notebook["questions"]),
         begin=next(wrong, None),
+        all_right=all(cell["right"] for notebook in notebooks for cell in notebook["exercises"]),
         problems=_problems(course, student),
         digest=_digest(course, student, grades),
     )
@@ -122,6 +128,7 @@ def _notebook(released, grades, record):
     return {
         "title": released.title,
         "file": f"{released.name}.ipynb",
+        "unreadable": bool(record) and all(row.status == "unreadable" for row in record["rows"]),
         "page": page,
         "earned": max(0.0, sum(cell["earned"] for cell in cells.values()) - grades.penalty),
         "most": sum(cell["most"] for cell in cells.values()),

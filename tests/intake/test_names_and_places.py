@@ -250,7 +250,10 @@ def test_everybody_who_handed_something_in_is_graded_or_told_why_not(course, san
         assert "did not hand in" not in page
         for text in (page, said, report):
             assert told.get(student, "") in text, student
-    assert "Nothing of it could be graded" in (course.feedback("pdf") / "index.html").read_text()
+    for student in ("pdf", "page"):
+        page = (course.feedback(student) / "index.html").read_text()
+        assert "Nothing of it could be graded" in page and "Begin with" not in page
+    assert "could not be read: see <em>About your files</em>" in page
     code, said = run(course, "grade")
     assert code == 0 and f"0 graded, {len(class_)} unchanged" in said
 

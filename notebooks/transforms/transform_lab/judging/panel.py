@@ -21,6 +21,8 @@ def title(verdict: Verdict) -> str:
     """One line: what is right, and what is not."""
     if verdict.right:
         return f"{verdict.exercise}: all right."
+    if verdict.status in ("missing", "unreadable"):
+        return f"{verdict.exercise}: not graded."
     if not verdict.done:
         return f"{verdict.exercise}: not done yet."
     if 0 < sum(verdict.parts.values()) < len(verdict.parts) * verdict.cases:
