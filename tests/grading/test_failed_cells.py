@@ -82,6 +82,19 @@ STOPPED = {  # {kind: (the solution's cell, what is said of it)}
         "begins with `import pandas_is_not_here` stopped with ModuleNotFoundError: No module named",
     ),
     "magic": ("%matplotlib widget\n" + SOLUTION, "begins with `%matplotlib widget` stopped with"),
+    "star import": (
+        "from mine_is_not_here import *",
+        "begins with `from mine_is_not_here import *` stopped with ModuleNotFoundError",
+    ),
+    "indented by one": ("x = 1\n " + SOLUTION, "begins with `x = 1` stopped with IndentationError"),
+    "in a block": (
+        "if True:\n    def chain(*t):\n        return 1\n    print('x'",
+        "begins with `if True:` stopped with SyntaxError",
+    ),
+    "unknown magic": (
+        "%%no_such_magic\n" + SOLUTION,
+        "begins with `%%no_such_magic` stopped with UsageError: Cell magic",
+    ),
     "time limit": (
         "while True:\n    pass\n" + SOLUTION,
         "begins with `while True:` had to be stopped: it took too long",
@@ -99,6 +112,27 @@ def test_the_cell_of_the_solution_stopped(grade, kind):
     rows, told = grade(notebook(chain=chain))
     assert rows["chain"].status == "error" and words in told and "There is no function" not in told
     assert rows["transform_pose"].score == rows["transform_pose"].max_score
+
+
+NOT_KEPT = {  # {kind: (the solution's cell, what helps)}
+    "another name": (
+        SOLUTION.replace("chain", "chain_all"),
+        "Its cell defines `chain_all`: give the function its own name again, `chain`.",
+    ),
+    "another letter": (SOLUTION.replace("chain", "\u0441hain"), "(its `\u0441` is cyrillic small letter es): give"),
+    "timeit": ("%%timeit -n1 -r1\n" + SOLUTION, "begins with `%%timeit`, which keeps what it defines to itself"),
+    "another value": (
+        SOLUTION + "\nchain = [1, 2]",
+        "Its cell defines `chain`, and another cell then removes the name",
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", NOT_KEPT)
+def test_a_function_that_is_not_there_though_no_cell_failed(grade, kind):
+    chain, words = NOT_KEPT[kind]
+    rows, told = grade(notebook(chain=chain))
+    assert rows["chain"].status == "error" and words in told
 
 
 def test_what_it_uses_is_not_there(grade):
@@ -120,9 +154,3 @@ def test_of_errors_that_follow_from_each_other_the_first_is_named():
     verdict = Verdict("chain", "error", error="NameError: name 'offset' is not defined, in your line 1")
     assert "begins with `import gone` stopped with ModuleNotFoundError" in explained(verdict, [first, second]).says
     assert explained(verdict, []) == verdict
-
-
-def test_a_function_under_another_name_is_told(grade):
-    rows, told = grade(notebook(chain="def chain_all(*transforms):\n    return transforms[0]"))
-    assert rows["chain"].status == "error"
-    assert "Its cell defines `chain_all`: give the function its own name again, `chain`." in told
