@@ -37,7 +37,7 @@ class Restoration:
         }
         unknown = Counter(cell.unknown for cell in self.cells if cell.unknown)
         self.said += [
-            f"{number} cell{'s' * (number > 1)} of the unknown type {kind!r} taken for text"
+            f"{number} cell{'s' * (number > 1)} of the unknown type {kind!r} {'were' if number > 1 else 'was'} taken for text"
             for kind, number in unknown.items()
         ]
 

@@ -161,7 +161,7 @@ def test_cells_of_an_unknown_type_are_text_and_are_told(course):
     last(raw).update(cell_type="sql", source="select *")
     shown, statuses, problems = kept(as_bytes(raw), course.notebooks[NAME])
     assert shown[-1][:2] == ("markdown", "select *") and statuses == {}
-    assert problems == [f"{NAME}.ipynb: 1 cell of the unknown type 'sql' taken for text."]
+    assert problems == [f"{NAME}.ipynb: 1 cell of the unknown type 'sql' was taken for text."]
 
 
 @pytest.mark.parametrize("minor", range(6))
