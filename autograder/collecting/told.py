@@ -3,7 +3,8 @@
 from collections import defaultdict
 from collections.abc import Iterator
 
-from .collect import Came, Outcome
+from .collect import Outcome
+from .folder import Came
 
 MOST = 5  # files that are named one by one
 

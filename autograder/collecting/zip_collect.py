@@ -11,8 +11,9 @@ from pathlib import Path
 from nbgrader.plugins import FileNameCollectorPlugin
 
 from ..course import Course, CourseError
-from .collect import Folder, by_download, introduce
+from .collect import by_download, introduce
 from .download import Download
+from .folder import Folder
 from .people import People
 from .systems import FORMS
 
