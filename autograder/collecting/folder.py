@@ -7,9 +7,10 @@ from datetime import UTC, datetime
 from pathlib import PurePosixPath
 
 from ..files import replace
-from ..intake.archive import Refused
+from ..intake.archive import Refused, contents
 from ..intake.naming import by_name, has_work, is_notebook, meant
 from ..intake.reading import Unreadable, cells
+from ..intake.sorting import PACKAGE
 from ..intake.submission import SECRET, TIMESTAMP
 from .kept import Origin, digest
 from .piece import Form, Left, Piece, Who
@@ -50,6 +51,7 @@ class _Candidate:
     time: datetime | None
     worked: bool
     exact: bool
+    inside: str = ""  # its path in the zip file that the piece is
 
     @property
     def when(self):
@@ -84,8 +86,7 @@ class Folder:
         """{place in the student's folder: the _Candidate for it}"""
         offered = defaultdict(list)
         for who, piece in pieces:
-            place, candidate = self._look_at(who, piece)
-            if candidate:
+            for place, candidate in self._look_at(who, piece):
                 offered[place.casefold()].append((place, candidate))
         chosen = {}
         for some in offered.values():
@@ -99,26 +100,39 @@ class Folder:
         return chosen
 
     def _look_at(self, who, piece):
-        """(place, _Candidate) of a piece; (place, None) when it is not taken, which is said."""
+        """[(place, _Candidate) of what a piece holds]; none when it is not taken, which is said."""
         path = piece.path
-        place, worked = str(path), True
         if path.parts[0].startswith(".") or any(part.startswith(".") for part in path.parts):
             self._pass(piece, "its name begins with a dot: a tool's own file")
-            return place, None
-        if place in (TIMESTAMP, SECRET):
+            return []
+        if str(path) in (TIMESTAMP, SECRET):
             self._pass(piece, "its name is one that nbgrader gives; what a student writes into it does not count")
-            return place, None
+            return []
         if any(len(part.encode()) > LONGEST_NAME for part in path.parts):
             self._pass(piece, "its name is too long for a file")
-            return place, None
+            return []
         try:
             content = self.download.read(piece.file)
         except Refused as refused:
             self._pass(piece, str(refused))
-            return place, None
-        if is_notebook(path.name) and (name := self._notebook(content, path.name)):
+            return []
+        files = unpacked(content) if path.suffix.lower() == ".zip" else {}
+        found = [self._candidate(who, piece, inside, entry) for inside, entry in files.items()]
+        if any(place.removesuffix(".ipynb") in self.course.notebooks for place, _ in found):
+            return found
+        return [self._candidate(who, piece, "", content)]  # any other zip is the intake's to speak of
+
+    def _candidate(self, who, piece, inside, content):
+        place, worked = inside or str(piece.path), True
+        filename = PurePosixPath(place).name
+        if is_notebook(filename) and (name := self._notebook(content, filename)):
             place, worked = f"{name[0]}.ipynb", name[1]
-        return place, _Candidate(piece, who, digest(content), self._utc(piece.time), worked, path.name == place)
+        exact = filename == place
+        return place, _Candidate(piece, who, digest(content), self._utc(piece.time), worked, exact, inside)
+
+    def _content(self, candidate):
+        content = self.download.read(candidate.piece.file)
+        return unpacked(content)[candidate.inside] if candidate.inside else content
 
     def _utc(self, time):
         """A time of a download in UTC; None for one that no calendar has."""
@@ -174,7 +188,7 @@ class Folder:
         )
         if self._may_write(place, new, candidate):
             if not self.dry_run:
-                self._write(place, self.download.read(candidate.piece.file))
+                self._write(place, self._content(candidate))
             self.came.written.append(place)
         if place.removesuffix(".ipynb") in self.course.notebooks:
             self.came.notebooks.append(place.removesuffix(".ipynb"))
@@ -242,3 +256,18 @@ class Folder:
         path = self.folder / place
         path.parent.mkdir(parents=True, exist_ok=True)
         replace(path, content)
+
+
+def unpacked(content: bytes) -> dict[str, bytes]:
+    """{path: bytes} of what a student has packed, without the folder that all of it lies in; {} when it cannot be read.
+
+    The students' package is nobody's work.
+    """
+    try:
+        files, _ = contents(content)
+    except Refused:
+        return {}
+    files = {path: entry for path, entry in files.items() if PACKAGE not in PurePosixPath(path).parts}
+    while files and len({path.partition("/")[0] for path in files}) == 1 and all("/" in path for path in files):
+        files = {path.partition("/")[2]: entry for path, entry in files.items()}
+    return files

@@ -80,6 +80,7 @@ class Candidate:
     released: Released
     named: bool
     numbers: tuple[int, ...]
+    zip: str = ""
 
     @property
     def exact(self):
@@ -106,8 +107,9 @@ class Candidate:
     @property
     def rank(self):
         """Work counts before an exact name, and that before other names; of copies the last one does."""
-        depth = len(PurePosixPath(self.path).parts)
-        return self.work, self.exact, -depth, self.named, self.numbers, self.path
+        depth = len(PurePosixPath(self.path.removeprefix(f"{self.zip}/")).parts)
+        of_zip = tuple(map(int, re.findall(r"\d{1,4}", PurePosixPath(self.zip).stem)))
+        return self.work, self.exact, -depth, self.named, of_zip, self.numbers, self.path
 
 
 def sort(files: Mapping[str, bytes], notebooks: Mapping[str, Released]) -> Sorted:
@@ -121,6 +123,7 @@ def sort(files: Mapping[str, bytes], notebooks: Mapping[str, Released]) -> Sorte
             if len(candidates) == MOST_NOTEBOOKS:
                 found.problems.append(f"{path}: left out; at most {MOST_NOTEBOOKS} notebooks are looked into.")
             elif candidate := _candidate(path, content, notebooks, found.problems):
+                candidate.zip = zips.get(path, "")
                 candidates.append(candidate)
     chosen = _choose(candidates, notebooks, found)
     _look_for_more(candidates, notebooks, chosen, found)

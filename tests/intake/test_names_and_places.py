@@ -362,3 +362,8 @@ def test_a_notebook_of_one_s_own_that_defines_a_function_is_not_the_assignment_s
 def test_names_do_not_turn_the_line_they_stand_in(released_here, tmp_path):
     (tmp_path / "a\u202eb.ipynb").write_bytes(b"x")
     assert not [line for line in submission_of(released_here, "", tmp_path).problems if "\u202e" in line]
+
+
+def test_of_zips_by_number_the_last_one_counts(released_here):
+    packs = {f"hw{suffix}.zip": packed({"1_rotation.ipynb": work(ONE, suffix)}) for suffix in ("", "-1", "-2", "-10")}
+    assert sort(packs, released_here.notebooks).sources == {ONE: "hw-10.zip"}
