@@ -12,12 +12,12 @@ from pathlib import Path
 
 import pytest
 from support import (
-    BROWSERS,
     CHROMIUM_FLAGS,
     MADE_AT_RUN_TIME,
     PATIENCE,
     ROOT,
     SOFTWARE_WEBGL,
+    TOOLS,
     chromium_here,
     lacking,
     path_without,
@@ -25,7 +25,6 @@ from support import (
 
 # Tests that use one of these fixtures, by themselves or through another, are left to `test --all`; all others are quick.
 TIERS = {"sandboxed": "sandbox", "open_python": "sandbox", "chromium": "browser", "slow": "slow"}
-TOOLS = {"sandbox": ["bwrap"], "browser": BROWSERS}  # programs that no other tier finds
 
 
 def pytest_addoption(parser):

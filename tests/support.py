@@ -29,6 +29,7 @@ ROOT = Path(__file__).resolve().parent.parent
 PATH = f"{Path(sys.prefix, 'bin')}{os.pathsep}{os.environ['PATH']}"  # nbgrader runs alembic by name
 MADE_AT_RUN_TIME = (".git", ".venv", "submitted", "autograded", "feedback", "reports", "gradebook.db", "__pycache__")
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+TOOLS = {"sandbox": ["bwrap"], "browser": BROWSERS}  # programs that tests of no other tier find
 SOFTWARE_WEBGL = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 CHROMIUM_FLAGS = (
     "--no-sandbox --disable-gpu --disable-background-networking --disable-component-update --disable-sync --no-first-run"

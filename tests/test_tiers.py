@@ -6,8 +6,7 @@ import subprocess
 import sys
 
 import pytest
-from conftest import TOOLS
-from support import ROOT, lacking, run
+from support import ROOT, TOOLS, lacking, run
 
 FILES = sorted((ROOT / "tests").rglob("test_*.py"))
 BENCHMARKS = sorted((ROOT / "tests").glob("benchmark_*.py"))

@@ -14,6 +14,7 @@ from .looks_like import what_it_is
 LARGEST = 100_000_000  # bytes of a file, outputs among them
 LARGEST_TEXT = 20_000_000  # characters of what is kept; of a released notebook it is below 100 kB, pictures included
 MOST_CELLS = 2_000
+MOST_PARTS = 500_000  # objects and lists in a file, which take much more memory than their text
 LONGEST_INTEGER = 400  # digits; a float has 309 at most
 ENTRY = ("grade_id", "points", "grade", "solution", "locked", "task", "checksum", "cell_type", "schema_version")
 BEGINNING = re.compile(r'\{\s*"(?:cells|metadata|nbformat|nbformat_minor|worksheets)"\s*:')  # as notebooks begin
@@ -45,6 +46,11 @@ def cells(content: bytes) -> list[Cell]:
             f"it has more than {LARGEST / 1e6:.0f} MB; clear its outputs (in Jupyter: Edit > Clear Outputs of All Cells), "
             "save it, and hand it in again"
         )
+    if content.count(b"{") + content.count(b"[") > MOST_PARTS or content.count(b",") > 10 * MOST_PARTS:
+        raise Unreadable(
+            "it has more parts than a notebook has; clear its outputs (in Jupyter: Edit > Clear Outputs of All Cells), save "
+            "it, and hand it in again"
+        )
     raw = _cells(content)
     if len(raw) > MOST_CELLS:
         raise Unreadable(
@@ -66,12 +72,11 @@ def _cells(content):
         text = content.decode(json.detect_encoding(content))
     except UnicodeDecodeError:
         text = content.decode("cp1252", "replace")  # an editor that was told to save it so
-    decoder = json.JSONDecoder(object_hook=_without_outputs, parse_int=_integer, strict=False)
     start = text.lstrip("\ufeff \t\r\n")
     if start[:1] != "{" and (found := BEGINNING.search(start)):  # below a line that some program has put in front
         start = start[found.start() :]
     try:
-        raw = decoder.raw_decode(start)[0]  # what follows is left from an editor that was interrupted
+        raw = _json(start)
     except (ValueError, RecursionError) as error:
         raise Unreadable(what_it_is(content, text, error)) from None
     if isinstance(raw, dict) and raw.get("type") == "notebook" and isinstance(raw.get("content"), dict):
@@ -85,11 +90,12 @@ def _cells(content):
     raise Unreadable(what_it_is(content, text, raw))
 
 
-def _without_outputs(found):
-    """Outputs are dropped while the file is read: they can be as large as memory."""
-    if "outputs" in found:
-        found["outputs"] = None
-    return found
+def _json(text):
+    """The first value in a text; what follows is left from an editor that was interrupted."""
+    try:
+        return json.JSONDecoder(strict=False).raw_decode(text)[0]
+    except ValueError:  # perhaps of an integer with too many digits
+        return json.JSONDecoder(parse_int=_integer, strict=False).raw_decode(text)[0]
 
 
 def _integer(digits):

@@ -11,6 +11,7 @@ from dataclasses import asdict
 from urllib.parse import quote
 
 from transform_lab.judging import panel
+from transform_lab.judging.status import STATUSES
 
 from ..bridge import nbgrader_api
 from ..course import ASSIGNMENT, CourseError
@@ -128,7 +129,7 @@ def _notebook(released, grades, record):
     return {
         "title": released.title,
         "file": f"{released.name}.ipynb",
-        "unreadable": bool(record) and all(row.status == "unreadable" for row in record["rows"]),
+        "unreadable": _unreadable(record),
         "page": page,
         "earned": max(0.0, sum(cell["earned"] for cell in cells.values()) - grades.penalty),
         "most": sum(cell["most"] for cell in cells.values()),
@@ -136,6 +137,12 @@ def _notebook(released, grades, record):
         "exercises": [cells[name] for name in released.points],
         "questions": [cells[name] for name in released.questions],
     }
+
+
+def _unreadable(record):
+    """What a notebook's status means when its file could not be read; "" for any other."""
+    status = record["rows"][0].status if record else ""
+    return STATUSES[status].means if status == "unreadable" else ""
 
 
 def _cell(name, most, released, grades, verdict, page):

@@ -193,9 +193,9 @@ def brightspace(works, join="/"):
     files = {"index.html": b"<html></html>"}
     for student, work in works.items():
         for attempt in work:
-            time = attempt.time
-            hour = f"{(time.hour + 11) % 12 + 1}{time:%M %p}"
-            folder = f"{student.number}-2557369 - {student.full} - {time:%b} {time.day}, {time.year} {hour}"
+            when = attempt.time
+            hour = f"{(when.hour + 11) % 12 + 1}{when:%M %p}"
+            folder = f"{student.number}-2557369 - {student.full} - {when:%b} {when.day}, {when.year} {hour}"
             files |= {f"{folder}{join}{name}": content for name, content in attempt.files.items()}
     return files
 
@@ -286,8 +286,8 @@ def sakai(works, flat=False, old_times=False, word="Submission attachment(s)"):
     for student, work in works.items():
         who = sakai_name(f"{student.sortable}({student.login})")
         begin = f"Transforms/{who}{'_' if flat else '/'}"
-        time = f"{work[-1].time:%Y%m%d%H%M%S}861" if old_times else f"{work[-1].time:%Y-%m-%dT%H:%M:%S}.861Z"
-        files[f"{begin}timestamp.txt"] = time.encode()
+        when = f"{work[-1].time:%Y%m%d%H%M%S}861" if old_times else f"{work[-1].time:%Y-%m-%dT%H:%M:%S}.861Z"
+        files[f"{begin}timestamp.txt"] = when.encode()
         if not flat:
             files[f"{begin}{who}_submissionText.html"] = (work[-1].text or "<p>&nbsp;</p>").encode()
             files[f"{begin}feedbackText.html"] = files[f"{begin}comments.txt"] = b""
@@ -341,8 +341,8 @@ def plain(works):
     }
 
 
-def utc(time, zone):
-    return time.replace(tzinfo=zone).astimezone(UTC)
+def utc(when, zone):
+    return when.replace(tzinfo=zone).astimezone(UTC)
 
 
 def later(hours):

@@ -100,9 +100,9 @@ def test_a_class_comes_out_as_it_handed_in(course, submitted, work, tmp_path, na
     assert set(found) == {called(student) for student in students}
     for student, mine in handed_in.items():
         theirs = found[called(student)]
-        time = theirs.pop("timestamp.txt", b"").decode()
+        stamp = theirs.pop("timestamp.txt", b"").decode()
         zoned = START.replace(tzinfo=UTC) if system in ("gradescope", "sakai") else START.astimezone(UTC)
-        assert time.startswith(f"{zoned:%Y-%m-%d %H:%M}" if timed else "") and timed == bool(time)
+        assert stamp.startswith(f"{zoned:%Y-%m-%d %H:%M}" if timed else "") and timed == bool(stamp)
         assert theirs == mine, student
     assert not accounted(files, outcome)
     assert not [one for left in outcome.left.values() for one in left if one.look]

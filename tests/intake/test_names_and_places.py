@@ -253,7 +253,7 @@ def test_everybody_who_handed_something_in_is_graded_or_told_why_not(course, san
     for student in ("pdf", "page"):
         page = (course.feedback(student) / "index.html").read_text()
         assert "Nothing of it could be graded" in page and "Begin with" not in page
-    assert "could not be read: see <em>About your files</em>" in page
+    assert "The file could not be read. See <em>About your files</em>, and hand it in again." in page
     code, said = run(course, "grade")
     assert code == 0 and f"0 graded, {len(class_)} unchanged" in said
 

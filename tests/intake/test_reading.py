@@ -387,3 +387,21 @@ def test_a_file_in_windows_letters_is_read(course):
     raw["cells"] = [cell for cell in raw["cells"] if cell["metadata"].get("nbgrader")]
     content = json.dumps(raw, ensure_ascii=False).encode("cp1252")
     assert "Größe" in [cell[1] for cell in kept(content, course.notebooks[ANSWERED])[0]]
+
+
+def test_a_file_of_countless_parts_is_not_read(course, monkeypatch):
+    """What a file needs in memory goes by its parts more than by its bytes."""
+    monkeypatch.setattr(reading, "MOST_PARTS", 1_000)
+    monkeypatch.setattr(reading, "_json", None)  # it would be called
+    raw = solution(NAME)
+    code(raw)["outputs"] = [[]] * 1_000
+    with pytest.raises(Unreadable, match="clear its outputs"):
+        cells(as_bytes(raw))
+
+
+def test_an_integer_of_countless_digits_is_no_obstacle(course):
+    content = as_bytes(solution(NAME)).replace(
+        b'"execution_count": 1,', b'"execution_count": ' + b"7" * 10_000 + b",", 1
+    )
+    assert b"7" * 10_000 in content
+    assert kept(content, course.notebooks[NAME]) == kept(as_bytes(solution(NAME)), course.notebooks[NAME])

@@ -1616,7 +1616,7 @@ def test_countless_cells_are_refused_at_once(released):
         intake = restore(content, original)
     finally:
         sys.setprofile(None)
-    assert "cells; at most" in intake.problems[0]
+    assert "cells, at most" in intake.problems[0]
     assert calls < CELLS  # no function of Python is called for each
 
 
