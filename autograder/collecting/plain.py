@@ -11,7 +11,11 @@ ZIP = re.compile(r"(?P<name>.+)\.zip", re.IGNORECASE)
 
 
 def fits(download):
-    """It is anybody's form, so there has to be a notebook in a folder, or nothing but zip files."""
+    """It is anybody's form, so there has to be a notebook in a folder, or nothing but zip files; a folder around all the
+    students' ones is to be taken off first.
+    """
+    if _lone(download) and all(len(path.parts) > 2 for path in download.files) and not _of_a_student(download):
+        return 0.0
     if not any(_zip(path) or len(path.parts) > 1 and is_notebook(path.name) for path in download.files):
         return 0.0
     return share(download, lambda path: len(path.parts) > 1 or _zip(path))
@@ -19,6 +23,40 @@ def fits(download):
 
 def _zip(path):
     return ZIP.fullmatch(path.name) if len(path.parts) == 1 else None
+
+
+def _lone(download):
+    """The only folder at the top; None where there are several."""
+    tops = {path.parts[0] for path in download.files if len(path.parts) > 1}
+    return tops.pop() if len(tops) == 1 else None
+
+
+def _of_a_student(download):
+    """Whether all folders hold the assignment's folder alone."""
+    return all(path.parts[1] == ASSIGNMENT for path in download.files if len(path.parts) > 1)
+
+
+def doubt(download, around: str) -> str:
+    """Why nothing tells whether the only folder is one student's; "" where it is, or there are several.
+
+    around: what the download is called
+    """
+    lone = _lone(download)
+    if not lone or _of_a_student(download):
+        return ""
+    inside = [path for path in download.files if len(path.parts) > 1]
+    loose = [path.name for path in inside if len(path.parts) == 2]
+    notebooks = [re.sub(r" ?\(\d+\)", "", name) for name in loose if is_notebook(name)]
+    deep = any(len(path.parts) > 2 and is_notebook(path.name) for path in inside)
+    if deep or any(map(ZIP.fullmatch, loose)):
+        return f"nothing tells whether {lone} is a student's folder, or the one around the students' folders"
+    called = lone.casefold()
+    if len(set(notebooks)) < len(notebooks) or called == ASSIGNMENT or around.casefold().startswith(called):
+        return (
+            f"all notebooks lie in one folder, {lone}, as Google Classroom gives them, and nothing tells whose they are; "
+            "if they are one student's, put them into a folder called as the student is"
+        )
+    return ""
 
 
 def sort(download, notebooks, people):

@@ -43,7 +43,10 @@ def recognised(download: Download, wanted: str | None = None) -> tuple[Form, Dow
             f"{download.name}: this may be of {' or of '.join(form.title for form in names.values())}; "
             f"say which with --from {' or --from '.join(names)}."
         )
-    return best[0][1], best[0][2]
+    _, form, view = best[0]
+    if form is plain.FORM and not wanted and (why := plain.doubt(view, download.name)):
+        raise CourseError(f"{download.name}: {why}. {_instead()} With --from plain each folder is taken for a student's.")
+    return form, view
 
 
 def _fitting(forms, download) -> Iterator[tuple[float, Form, Download]]:

@@ -469,5 +469,44 @@ def test_folders_around_a_download_do_not_matter(course, submitted, work, tmp_pa
         assert {came.form.name for came in outcome.came} == {system} and len(outcome.came) == len(ODD)
 
 
+@pytest.mark.parametrize("around", ["Transforms/", "dl/Transforms (1)/"])
+@pytest.mark.parametrize("who", [ODD[:2], ODD[:1]])
+def test_folders_around_students_folders_do_not_matter(course, submitted, work, tmp_path, around, who):
+    files = {around + path: c for path, c in downloads.plain({s: [Attempt(work(s.login))] for s in who}).items()}
+    files["__MACOSX/Transforms/._x"] = b""
+    collect(course, [packed(tmp_path / "Transforms.zip", files)])
+    assert submitted() == {s.login: work(s.login) for s in who}
+
+
+def test_zip_files_and_nbgraders_folders_in_a_folder(course, submitted, work, tmp_path):
+    files = {f"submitted/ana/transforms/{name}": content for name, content in work("a").items()}
+    collect(course, [packed(tmp_path / "a.zip", files)])
+    assert submitted() == {"ana": work("a")}
+    files = {f"Transforms/{name}.zip": b"PK\5\6" + bytes(18) for name in ("bo", "pat")}
+    collect(course, [packed(tmp_path / "b.zip", files)])
+    assert set(submitted()) == {"ana", "bo", "pat"}
+
+
+@pytest.mark.parametrize(
+    "others",
+    [{"notes.txt"}, {"Transforms/notes.txt", "Transforms/1_rotation.ipynb"}, {"Transforms/pat.zip"}],
+)
+def test_people_are_never_merged(course, work, tmp_path, others):
+    files = {f"Transforms/{who}/{name}": c for who in ("ana", "bo") for name, c in work(who).items()}
+    with pytest.raises(CourseError, match="nothing tells whether Transforms is a student's folder"):
+        collect(course, [packed(tmp_path / "a.zip", files | dict.fromkeys(others, b"1"))])
+    assert not (course.root / "submitted").exists()
+
+
+@pytest.mark.parametrize("name, top", [("a", "Transforms"), ("Lab-2026-001", "Lab"), ("a", "Homework 3")])
+def test_loose_notebooks_of_several_people_in_one_folder_are_refused(course, work, tmp_path, name, top):
+    files = {f"{top}/{file}": content for file, content in work("a").items()}
+    if top == "Homework 3":
+        files[f"{top}/1_rotation (1).ipynb"] = b"{}"
+    with pytest.raises(CourseError, match="(?s)Google Classroom.*called as the student is"):
+        collect(course, [packed(tmp_path / f"{name}.zip", files)])
+    assert not (course.root / "submitted").exists()
+
+
 def test_every_system_has_its_downloads_here():
     assert {system for _, system, _, _ in SYSTEMS.values()} | {"github"} == set(FORMS)
