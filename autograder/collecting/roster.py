@@ -39,7 +39,7 @@ ROWS = 12  # among which the row with the columns' names is looked for
 
 def read(path: Path, people: People) -> None:
     """Add who is in a class list to `people`; raises CourseError when it is none, or is unsure who somebody is."""
-    unsure, here = [], set()
+    unsure, here = [], {}
     for row in _rows(path):
         who = Who(**{kind: row.get(kind, "") for kind in ("name", "login", "email", "lms_id", "sid", "number")})
         first, last = row.get("first", ""), row.get("last", "")
@@ -53,7 +53,10 @@ def read(path: Path, people: People) -> None:
         if person:
             if person in here and not any(row.get(kind) for kind in ("id", *KINDS)):
                 unsure.append(f"{path}: {who}: the list has this name twice; give it a column that tells them apart.")
-            here.add(person)
+            if person in here and _is_another(who, here[person]):
+                unsure.append(f"{path}: {here[person]} and {who}: two people of one id, {person.id}; give one another id.")
+                continue
+            here.setdefault(person, who)
             _learn(person, row, who)
             people.learned(person)
     if unsure:
@@ -69,6 +72,15 @@ def _person(row, who, people):
     person = people.find(who, LISTS) or people.listed_as(listed)
     chosen = folder_name(row.get("id") or who.login or who.email or who.sid or who.lms_id or who.name)
     return person or (people.add(chosen) if chosen else None)
+
+
+def _is_another(who, before):
+    """Whether two rows of a list are about two people: another name, and another number or address."""
+    one = Person("")
+    one.learn(before)
+    other_name = bool(who.name and before.name) and LISTS.folded(who.name) not in map(LISTS.folded, one.variants())
+    pairs = [(getattr(who, kind).casefold(), getattr(before, kind).casefold()) for kind in KINDS if kind != "login"]
+    return other_name and any(one and other and one != other for one, other in pairs)
 
 
 def _learn(person, row, who):

@@ -101,3 +101,13 @@ def test_two_of_one_name_stay_two_where_anything_tells_them_apart(tmp_path):
         read(tmp_path, "name\nKim Lee\nKim Lee\n")
     with pytest.raises(CourseError, match="already another student"):
         read(tmp_path, "name,number\nKim Lee,1\nKim Lee,2\n")
+
+
+def test_one_id_of_two_people_is_said_with_both(tmp_path):
+    rows = "agarcia,Ana García,ana@example.org\nagarcia,Bo Cruz,bo@example.org\n"
+    with pytest.raises(CourseError, match=r"Ana García \(.*\) and Bo Cruz \(.*\): two people of one id, agarcia"):
+        read(tmp_path, "id,name,email\n" + rows)
+    with pytest.raises(CourseError, match="two people of one id, agarcia"):
+        read(tmp_path, "username,name,email\n" + rows)
+    people = read(tmp_path, "id,name,email\nagarcia,Ana García,ana@example.org\nagarcia,\"García, Ana\",a2@example.org\n")
+    assert set(people.all) == {"agarcia"}
