@@ -101,15 +101,18 @@ def by_download(downloads, people, notebooks, system=None):
 
 
 def _separate(paths):
-    """The downloads that are meant: a folder with nothing but zip files of systems' forms in it holds several."""
+    """The downloads that are meant: a folder with nothing but zip files of systems' forms in it holds one or several. What one
+    has been unpacked into, and called as it is, is not taken a second time.
+    """
     for path in paths:
         if not path.exists():
             raise CourseError(f"{path}: there is no such file or folder.")
         inside = [each for each in sorted(path.iterdir()) if not each.name.startswith(".")] if path.is_dir() else []
-        if len(inside) > 1 and all(each.suffix.lower() == ".zip" and each.is_file() for each in inside):
-            if all(map(_is_of_a_system, inside)):
-                yield from inside
-                continue
+        zips = [each for each in inside if each.suffix.lower() == ".zip" and each.is_file()]
+        unpacked = [each for each in inside if each.is_dir() and each.name in {zipped.stem for zipped in zips}]
+        if zips and len(zips) + len(unpacked) == len(inside) and all(map(_is_of_a_system, zips)):
+            yield from zips
+            continue
         yield path
 
 

@@ -1,10 +1,14 @@
 """All systems whose downloads are known, and which of them a download is of."""
 
+import copy
+from collections import defaultdict
 from collections.abc import Iterator
+from pathlib import PurePosixPath
 
 from ..course import CourseError
+from ..intake.archive import Archive, Refused
 from . import blackboard, brightspace, canvas, edx, github, gradescope, ilias, moodle, plain, sakai, teams
-from .download import Download
+from .download import BOUNDS, Download
 from .piece import Form
 
 FORMS = {
@@ -17,6 +21,7 @@ REFUSED = {
     "google": "Google Classroom: files keep the names that students give them, so nothing tells whose they are",
 }
 ENOUGH = 0.5  # the share of the files that have to fit
+MOST_ZIPS = 3  # zip files in a download that are looked into: a class has more
 
 
 def recognised(download: Download, wanted: str | None = None) -> tuple[Form, Download]:
@@ -46,7 +51,31 @@ def recognised(download: Download, wanted: str | None = None) -> tuple[Form, Dow
     _, form, view = best[0]
     if form is plain.FORM and not wanted and (why := plain.doubt(view, download.name)):
         raise CourseError(f"{download.name}: {why}. {_instead()} With --from plain each folder is taken for a student's.")
+    if form is plain.FORM and not wanted and (inner := _inner(view)):
+        name, title = inner
+        raise CourseError(f"{download.name}: {name} in it is a download of its own ({title}); collect that by itself.")
     return form, view
+
+
+def _inner(view):
+    """(name, title) of a folder or zip file in a plain download that is itself a system's download; None without one."""
+    forms, below = [form for form in FORMS.values() if form is not plain.FORM], defaultdict(dict)
+    for path, where in view.files.items():
+        if len(path.parts) > 1:
+            below[path.parts[0]][PurePosixPath(*path.parts[1:])] = where
+        elif len(view.files) <= MOST_ZIPS and path.suffix.lower() == ".zip":
+            try:
+                with Archive(view.read(path), BOUNDS) as archive:
+                    below[path.name] = {entry: entry for entry in archive.entries}
+            except Refused:
+                continue
+    for name, files in below.items():
+        inside = copy.copy(view)
+        inside.name, inside.files = name, files
+        best = next((each for each in _fitting(forms, inside) if each[0] > ENOUGH), None)
+        if best:
+            return name, best[1].title
+    return None
 
 
 def _fitting(forms, download) -> Iterator[tuple[float, Form, Download]]:

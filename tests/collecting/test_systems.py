@@ -508,5 +508,21 @@ def test_loose_notebooks_of_several_people_in_one_folder_are_refused(course, wor
     assert not (course.root / "submitted").exists()
 
 
+def test_one_download_in_a_folder_is_that_download(course, submitted, work, tmp_path):
+    files = downloads.canvas({ODD[0]: [Attempt(work("a"))]})
+    folder = tmp_path / "dl"
+    folder.mkdir()
+    inner = packed(folder / "submissions.zip", files)
+    collect(course, [folder])
+    assert submitted() == {"48288": work("a")}
+    unpacked(folder / "submissions", files)
+    collect(course, [folder])
+    assert submitted() == {"48288": work("a")}
+    (folder / "notes.txt").write_text("1")
+    for bad in (folder, packed(tmp_path / "outer.zip", {"submissions.zip": inner.read_bytes()})):
+        with pytest.raises(CourseError, match=r"submissions(.zip)? in it is a download of its own \(Canvas"):
+            collect(course, [bad])
+
+
 def test_every_system_has_its_downloads_here():
     assert {system for _, system, _, _ in SYSTEMS.values()} | {"github"} == set(FORMS)
