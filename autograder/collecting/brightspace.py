@@ -3,10 +3,11 @@
 A folder for each submission, `N-N - NAME - Mon D, YYYY HMM AM`, the time without a colon and not padded (`926 PM`, `1226 AM`),
 and an index.html beside them; in another version the files of all lie side by side, with ` - NAME.ext` behind that. NAME may
 hold ` - `. The sources are public scripts that read them (such as jdmau72/Grading-Tools-). They agree that the first number
-differs from student to student, and not on what the second one is. The time is the server's local time.
+differs from student to student, or from attempt to attempt, and not on what the second one is. The time is the server's local time.
 """
 
 import re
+from collections import defaultdict
 from datetime import datetime
 from pathlib import PurePosixPath
 
@@ -26,9 +27,11 @@ def fits(download):
 
 def sort(download, notebooks, people):
     pieces, left = [], []
+    numbers = _numbers([part for path in download.files if (part := _part(path))], people)
     for path in download.files:
         if part := _part(path):
-            who = Who(part["name"].strip(), number=part["number"])
+            name = part["name"].strip()
+            who = Who(name, number=numbers.get(name, part["number"]))
             inside = PurePosixPath(part["file"] or "", *path.parts[1:])
             pieces.append(Piece((who,), path, inside, time=_time(part), order=(int(part["second"]),)))
         elif not _own(path):
@@ -39,6 +42,23 @@ def sort(download, notebooks, people):
 def _part(path):
     part = PART.fullmatch(path.parts[0])
     return part if part and part["month"] in MONTHS and bool(part["file"]) == (len(path.parts) == 1) else None
+
+
+def _numbers(parts, people):
+    """{name: the number to know somebody by} of those who came under several, and are one person all the same: the class list
+    has the name once, or their second number is one and nobody else's.
+    """
+    seconds, firsts, found = defaultdict(set), defaultdict(set), {}
+    for part in parts:
+        seconds[part["name"].strip()].add(part["second"])
+        firsts[part["name"].strip()].add(part["number"])
+    for name, several in firsts.items():
+        others = set().union(*(theirs for other, theirs in seconds.items() if other != name))
+        listed = [person for person in people.named(name, FORM) if person.listed]
+        one = len(listed) == 1 or not listed and len(seconds[name]) == 1 and not seconds[name] & others
+        if len(several) > 1 and one and not any(people.knows("number", number) for number in several):
+            found[name] = min(several, key=int)
+    return found
 
 
 def _own(path):
