@@ -15,6 +15,8 @@ from sqlalchemy import make_url
 from ..bridge.gradebook import opened
 from ..bridge.nbgrader_api import db_url
 from ..course import Course, CourseError
+from ..intake.archive import Refused
+from ..intake.naming import by_cells, by_name, is_notebook
 from . import roster
 from .download import Download
 from .folder import Came, Folder
@@ -63,10 +65,16 @@ def _collect(course, paths, lists, system, zone, dry_run):
         roster.read(path, people)
     with ExitStack() as stack:
         downloads = [stack.enter_context(Download(path)) for path in _separate(paths)]
-        for download, form, view, by_person, left in by_download(downloads, people, list(course.notebooks), system):
+        found = list(by_download(downloads, people, list(course.notebooks), system))
+        if not system:
+            _of_this_assignment(course, found)
+        for download, form, view, by_person, left in found:
             for person, whose in by_person.items():
                 folder = Folder(course, view, form, kept.files.setdefault(person.id, {}), person, zone, dry_run, left)
                 outcome.came.append(folder.take(whose))
+                if not outcome.came[-1].notebooks and not any(map(_is_zip, whose)):
+                    files = "1 file" if len(whose) == 1 else f"{len(whose)} files"
+                    outcome.came[-1].say(f"no notebook of this assignment among {files}", look=True)
                 if _is_perhaps_a_group(person, whose[0][0], form, people):
                     outcome.came[-1].say(
                         f"perhaps a group's: it came under the name {whose[0][0].name}; all members get it with a class list "
@@ -95,6 +103,33 @@ def by_download(downloads, people, notebooks, system=None):
         found = form.sort(view, notebooks, people)
         left = [Left(problem.rstrip(".").replace(": left out; ", ": ")) for problem in download.problems] + found.left
         yield download, form, view, _by_person(found.pieces, form, people, left), left
+
+
+def _of_this_assignment(course, found):
+    """Raise CourseError when there is a download with work in it, and none of it is of this assignment."""
+    for download, form, view, by_person, _ in found:
+        whose = [each for some in by_person.values() for each in some]
+        if whose and not any(_is_zip(each) or _is_ours(course, view, each) for each in whose):
+            raise CourseError(
+                f"{download.name}: this looks like the download of another assignment: no notebook of this one is among its "
+                f"files. Nothing was written; --from {form.name} takes it all the same."
+            )
+
+
+def _is_zip(each):
+    """Whether a (Who, Piece) may hold notebooks."""
+    return each[1].path.suffix.lower() == ".zip"
+
+
+def _is_ours(course, view, each):
+    """Whether a (Who, Piece) is a notebook of this assignment, by its name or else by its cells."""
+    _, piece = each
+    if not is_notebook(piece.path.name):
+        return False
+    try:
+        return bool(by_name(piece.path.name, course.notebooks) or by_cells(view.read(piece.file), course.notebooks))
+    except Refused:
+        return False
 
 
 # --- what is there --------------------------------------------------------------------------------------------------

@@ -277,6 +277,47 @@ def test_a_students_folder_is_safe(text, name):
     assert folder_name(text) == name
 
 
+@pytest.mark.parametrize("listed", [False, True])
+def test_attempts_of_one_person_under_several_numbers_of_brightspace(course, submitted, work, tmp_path, listed):
+    """The second number is nobody else's, or the class list has the name once."""
+    files = {
+        f"{number}-{second} - {who} - Sep {day}, 2026 926 PM/1_rotation.ipynb": work(day)["1_rotation.ipynb"]
+        for number, second, who, day in (
+            (397063, 7 if listed else 2557369, "Mary-Ann Smith", 24), (397064, 2557369, "Mary-Ann Smith", 25),
+            (397065, 2557369 if listed else 2557370, "Bo Cruz", 26),
+        )
+    }  # fmt: skip
+    (tmp_path / "list.csv").write_text("id,name\nmary,Mary-Ann Smith\nbo,Bo Cruz\n")
+    where = packed(tmp_path / "a.zip", files)
+    outcome = collect(course, [where], [tmp_path / "list.csv"] if listed else [])
+    assert not reasons(outcome)
+    found = submitted()["mary" if listed else "Mary-Ann_Smith"]
+    assert found["1_rotation.ipynb"] == work(25)["1_rotation.ipynb"] and len(submitted()) == 2
+
+
+# --- what is of another assignment ----------------------------------------------------------------------------------
+
+
+def test_who_has_no_notebook_of_ours_is_told(course, submitted, work, tmp_path):
+    other = {"notes.txt": b"1", "README.md": b"2", "lab.docx": b"3"}
+    works = {ANA: [Attempt(work("a"))], BO: [Attempt(other)], PAT: [Attempt({"all.zip": b"PK\5\6" + bytes(18)})]}
+    outcome = collect(course, [packed(tmp_path / "a.zip", downloads.canvas(works))])
+    came = {one.student: one for one in outcome.came}
+    assert came["48291"].remarks == ["no notebook of this assignment among 3 files"] and came["48291"].look
+    assert not came["48288"].look and not came["48300"].look
+
+
+def test_the_download_of_another_assignment_is_refused_before_anything_is_written(course, submitted, work, tmp_path):
+    good = blackboard(tmp_path, {ANA: [Attempt(work("a"))]}, "good.zip")
+    empty = b'{"cells": [], "metadata": {}, "nbformat": 4, "nbformat_minor": 5}'
+    other = packed(tmp_path / "b.zip", downloads.canvas({BO: [Attempt({"essay.docx": b"1", "essay.ipynb": empty})]}))
+    with pytest.raises(CourseError, match="looks like the download of another assignment.*--from canvas"):
+        collect(course, [good, other])
+    assert not (course.root / "submitted").exists()
+    collect(course, [other], system="canvas")
+    assert set(submitted()["48291"]) == {"essay.docx", "essay.ipynb"}
+
+
 # --- what means no good ---------------------------------------------------------------------------------------------
 
 
