@@ -14,8 +14,10 @@ Moodle gives no time, and of each student the last attempt alone.
 """
 
 import re
+from collections import defaultdict
 from pathlib import PurePosixPath
 
+from ..intake.archive import Refused
 from .piece import Form, Found, Left, Piece, Who, own, plainly, share
 
 PART = re.compile(
@@ -28,6 +30,14 @@ PARTICIPANT = set(
     "deltagare deltager deltaker osallistuja uczestnik účastník účastníčka résztvevő участник учасник συμμετέχων "
     "katılımcı 参加者 参与者 "
     "成员 參與者 참가자 참여자 مشارك משתתף peserta".split()
+)
+
+WORDS = "groups?|teams?|gruppe|groupe|grupo|gruppo|groep|grupa|équipe|equipe|equipo|squadra|tým|zespół|グループ|チーム|小组|组"
+GROUP = re.compile(rf"(?:{WORDS}) .+|(?:.* )?(?:standard)?(?:{WORDS})(?: ?\w{{1,3}})?", re.IGNORECASE)
+NO_GROUP = re.compile(
+    "default group|standardgruppe|groupe par défaut|grupo (?:por defecto|predeterminado|padrão)|standaardgroep|"
+    "gruppo (?:predefinito|di default)",
+    re.IGNORECASE,
 )
 
 
@@ -47,11 +57,12 @@ def sort(download, notebooks, people):
     names, numbers = {folded(part["name"]) for part in found}, {part["number"] for part in found}
     blind = names <= PARTICIPANT or len(names) == 1 and len(numbers) > 1
     teams = any(part["number"] is None for part in found)
+    groups = _groups(download, parts)
     for path, part in parts.items():
         if not part:
             left.append(Left("it is not named as Moodle names files", (str(path),)))
             continue
-        who = Who(number=part["number"] or "") if blind else _who(part["name"], part["number"] or "", teams, people)
+        who = Who(number=part["number"] or "") if blind else _who(part, teams, groups, people)
         inside = PurePosixPath(part["file"] or "", *path.parts[1:])
         if part["plugin"] == "onlinetext":
             left.append(Left("a text, typed into Moodle", (str(path),), str(who)))
@@ -64,8 +75,35 @@ def sort(download, notebooks, people):
     return Found(pieces, left + own(others, "Moodle's own, or of another kind of submission"))
 
 
-def _who(name, number, teams, people):
+def _groups(download, parts):
+    """What stands before `-` in "GROUP-Fullname": who is in no group has the words for that there; in a group, each member's
+    row has the same files. "Jean-Paul" and "Jean-Luc" are no group for having handed in the same.
+    """
+    rows, files = defaultdict(set), defaultdict(dict)
+    for path, part in parts.items():
+        for place in re.finditer("-", part["name"] if part else ""):
+            before = part["name"][: place.start()]
+            if NO_GROUP.fullmatch(before) or GROUP.fullmatch(before) or re.search(r"[\s\d]", before):
+                rows[before].add(part[0])
+                files[part[0]][part["file"], path.parts[1:]] = path
+    found = {before for before in rows if NO_GROUP.fullmatch(before)}
+    for before in rows.keys() - found:
+        contents = {_contents(download, files[row]) for row in rows[before]} if len(rows[before]) > 1 else ()
+        if len(contents) == 1:
+            found.add(before)
+    return found
+
+
+def _contents(download, files):
+    try:
+        return frozenset((name, hash(download.read(path))) for name, path in files.items())
+    except Refused:
+        return None
+
+
+def _who(part, teams, groups, people):
     """Who a folder's name tells of; a user name, number or address in it counts where it fits a known person's name."""
+    name, number = part["name"], part["number"] or ""
     if address := ADDRESS.fullmatch(name):
         return Who(address["name"], email=f"{address['user']}@{address['domain']}", number=number)
     for word in filter(None, re.split(r"[\s,_()-]+", name)):
@@ -77,7 +115,9 @@ def _who(name, number, teams, people):
         rest = name[place + 1 :].strip()
         if " " in rest and people.named(rest, FORM) and not people.named(name, FORM):
             return Who(rest, number=number)  # "GROUP-Fullname"
-    return Who(name, number=number, group=teams)
+    if before := max((each for each in groups if name.startswith(f"{each}-")), key=len, default=""):
+        return Who(name.removeprefix(f"{before}-").strip(), number=number)
+    return Who(name, number=number, group=teams or bool(GROUP.fullmatch(name)) and not people.named(name, FORM))
 
 
 FORM = Form("moodle", "Moodle: Download all submissions", fits, sort, folded)

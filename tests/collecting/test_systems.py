@@ -232,8 +232,9 @@ def test_canvas_gives_a_groups_work_to_all_its_members(course, submitted, work, 
     rows = [f'"{s.full}",{s.number},{s.login},{s.login},,{"Group 7" if s in ODD[:2] else ""}' for s in ODD]
     path = tmp_path / "groups.csv"
     path.write_text("\n".join(["name,canvas_user_id,user_id,login_id,sections,group_name", *rows]), encoding="utf-8")
-    collect(course, [where], [path])
+    outcome = collect(course, [where], [path])
     assert submitted() == {student.login: work("group") for student in ODD[:2]}
+    assert not any(came.remarks for came in outcome.came)
 
 
 def test_a_group_of_canvas_without_a_list_of_groups_is_told(course, submitted, work, tmp_path):
@@ -304,6 +305,21 @@ def test_moodles_groups(course, submitted, work, tmp_path):
     assert submitted() == {s.login: work("b", "1_rotation") for s in ODD[:3:2]}
     collect(course, [packed(tmp_path / "old.zip", old)], [path])
     assert submitted()[ODD[0].login] == work("a", "1_rotation")
+
+
+def test_moodles_groups_without_a_list_are_no_people(course, submitted, work, tmp_path):
+    new = {f"{name}_99{i}_assignsubmission_file/{path}": content
+           for i, name in enumerate(("Team A", "Gruppe 12", "Lab group B")) for path, content in work(i).items()}  # fmt: skip
+    outcome = collect(course, [packed(tmp_path / "new.zip", new)])
+    assert submitted() == {} and not accounted(new, outcome)
+    whose = {"Team A-Ana G-N": "a", "Team A-Bo Cruz": "a", "Default group-Pat Lee": "p", "Team B-Kim Lee": "k"}
+    whose |= {"Jean-Paul X": "j", "Jean-Luc X": "j"}
+    old = {f"{name}_{1234 + i}_assignsubmission_file_/{path}": content
+           for i, (name, mine) in enumerate(whose.items()) for path, content in work(mine).items()}  # fmt: skip
+    outcome = collect(course, [packed(tmp_path / "old.zip", old)])
+    both = {name: work("a") for name in ("Ana_G-N", "Bo_Cruz")}
+    assert submitted() == both | {"Pat_Lee": work("p"), "Jean-Paul_X": work("j"), "Jean-Luc_X": work("j")}
+    assert {one.whose for some in outcome.left.values() for one in some} == {"Team B-Kim Lee (no. 1237)"}
 
 
 @pytest.mark.parametrize(
