@@ -28,12 +28,16 @@ from .systems import FORMS, recognised
 
 @dataclass
 class Outcome:
-    """All that came of a run. left: {download: [Left]}; missing: who of the class has nothing in submitted/ yet"""
+    """All that came of a run. left: {download: [Left]}; missing: who of the class has nothing in submitted/ yet;
+    unsettled: of whom something was left, so that they have nothing there either; zone: that in which times are shown
+    """
 
     came: list[Came] = field(default_factory=list)
     left: dict[str, list[Left]] = field(default_factory=dict)
     missing: list[str] = field(default_factory=list)
+    unsettled: list[str] = field(default_factory=list)
     taken: set[tuple[str, str]] = field(default_factory=set)  # (download, file) that lies in submitted/ now
+    zone: tzinfo | None = None
     zoneless: bool = False  # whether there were times in a server's local time
 
 
@@ -58,11 +62,12 @@ def collect(
 
 
 def _collect(course, paths, lists, system, zone, dry_run):
-    kept, people, outcome = Kept(course), People(FORMS.values()), Outcome()
+    kept, people, outcome = Kept(course), People(FORMS.values()), Outcome(zone=zone)
     introduce(course, people)
     kept.introduce(people)
     for path in lists:
         roster.read(path, people)
+    whose_left: set[str] = set()
     with ExitStack() as stack:
         downloads = [stack.enter_context(Download(path)) for path in _separate(paths)]
         found = list(by_download(downloads, people, list(course.notebooks), system))
@@ -75,21 +80,25 @@ def _collect(course, paths, lists, system, zone, dry_run):
                 if not outcome.came[-1].notebooks and not any(map(_is_zip, whose)):
                     files = "1 file" if len(whose) == 1 else f"{len(whose)} files"
                     outcome.came[-1].say(f"no notebook of this assignment among {files}", look=True)
-                if _is_perhaps_a_group(person, whose[0][0], form, people):
+                who = whose[0][0]
+                if _is_perhaps_a_group(person, who, form, people) and not people.members(who.name, form):
                     outcome.came[-1].say(
-                        f"perhaps a group's: it came under the name {whose[0][0].name}; all members get it with a class list "
+                        f"perhaps a group's: it came under the name {who.name}; all members get it with a class list "
                         "that has a column group",
                         look=True,
                     )
                 outcome.taken |= {(download.name, str(file)) for file in folder.taken}
                 outcome.zoneless |= any(piece.time and not piece.time.tzinfo for _, piece in whose)
             outcome.left.setdefault(download.name, []).extend(left)
+            whose_left |= {person.id for one in left if one.look for person in _meant(one.whose, form, people)}
     there = {came.student for came in outcome.came}
     if not dry_run:
         _remember(course, people, kept, there)
     with_list = any(person.listed for person in people.all.values())
     in_class = [person.id for person in people.all.values() if person.listed or not with_list]
-    outcome.missing = sorted(each for each in in_class if each not in there and not course.submitted(each).is_dir())
+    missing = sorted(each for each in in_class if each not in there and not course.submitted(each).is_dir())
+    outcome.missing = [each for each in missing if each not in whose_left]
+    outcome.unsettled = [each for each in missing if each in whose_left]
     return outcome
 
 
@@ -228,6 +237,16 @@ def _persons(who, form, people, with_list, twins):
         person.learn(who, form.name)
         people.learned(person)
     return [person]
+
+
+def _meant(whose, form, people):
+    """All who may be meant by the words of a Left, by their name or by what they are known by."""
+    name, _, rest = whose.removesuffix(")").partition(" (")
+    values = {value.removeprefix("no. ").casefold() for value in (name, *rest.split(", ")) if value}
+    for person in people.all.values():
+        known = {value.casefold() for some in person.keys.values() for value in some} | {person.id.casefold()}
+        if name and people.called(person, name, form) or known & values:
+            yield person
 
 
 def _is_perhaps_a_group(person, who, form, people):

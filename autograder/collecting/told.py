@@ -2,6 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Iterator
+from datetime import tzinfo
 
 from .collect import Outcome
 from .folder import Came
@@ -16,15 +17,15 @@ def table(outcome: Outcome) -> list[tuple[str, str, str, str, str]]:
             came.student,
             f"{came.form.name}: {came.who}",
             ", ".join(came.notebooks) if len(came.notebooks) < 3 else f"{len(came.notebooks)} notebooks",
-            _handed_in(came),
+            _handed_in(came, outcome.zone),
             "; ".join((*([] if came.written else ["nothing new"]), *came.remarks)),
         )
         for came in outcome.came
     ]
 
 
-def _handed_in(came: Came) -> str:
-    time = f"{came.time.astimezone():%Y-%m-%d %H:%M}" if came.time else ""
+def _handed_in(came: Came, zone: tzinfo | None) -> str:
+    time = f"{came.time.astimezone(zone):%Y-%m-%d %H:%M %Z}" if came.time else ""
     return f"{time} LATE".strip() if came.late else time
 
 
@@ -41,6 +42,8 @@ def lines(outcome: Outcome, zone: str | None, dry_run: bool) -> Iterator[str]:
             yield f"{download}: left: {whose}{why}" + (f" ({_some(files)})." if files else ".")
     if outcome.missing:
         yield f"Nothing handed in: {', '.join(outcome.missing)}."
+    if outcome.unsettled:
+        yield f"Left, see above: {', '.join(outcome.unsettled)}."
     if outcome.zoneless:
         yield f"Times in files' names are taken as local time {f'of {zone}' if zone else 'of this machine (--timezone)'}."
     written = sum(bool(came.written) for came in outcome.came)

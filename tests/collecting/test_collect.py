@@ -13,6 +13,7 @@ from test_systems import accounted, state, write_list
 
 from autograder.collecting.collect import collect
 from autograder.collecting.people import folder_name
+from autograder.collecting.told import table
 from autograder.course import CourseError
 from autograder.intake.submission import receipts
 
@@ -157,6 +158,13 @@ def test_times_are_written_as_nbgrader_reads_them(course, work, tmp_path):
     assert outcome.zoneless and outcome.came[0].time == downloads.utc(later(2), ZoneInfo("America/New_York"))
 
 
+def test_times_are_shown_in_the_zone_that_was_used(course, work, tmp_path):
+    where = blackboard(tmp_path, {ANA: [Attempt(work("a"))]})
+    outcome = collect(course, [where], zone=ZoneInfo("America/New_York"))
+    assert table(outcome)[0][3] == "2026-11-18 17:34 EST"
+    assert table(collect(course, [where]))[0][3] == f"{downloads.START.astimezone():%Y-%m-%d %H:%M %Z}"
+
+
 def test_times_of_zip_entries_are_no_times_of_handing_in(course, submitted, work, tmp_path):
     for build in (downloads.canvas, downloads.moodle, downloads.ilias):
         outcome = collect(course, [packed(tmp_path / "a.zip", build({ANA: [Attempt(work("a"))]}))])
@@ -293,6 +301,14 @@ def test_attempts_of_one_person_under_several_numbers_of_brightspace(course, sub
     assert not reasons(outcome)
     found = submitted()["mary" if listed else "Mary-Ann_Smith"]
     assert found["1_rotation.ipynb"] == work(25)["1_rotation.ipynb"] and len(submitted()) == 2
+
+
+def test_whose_work_was_left_is_not_said_to_have_handed_in_nothing(course, work, tmp_path):
+    twins = [Student("Kim", "Lee", "kim1", 11), Student("Kim", "Lee", "kim2", 22)]
+    files = downloads.moodle({s: [Attempt(work(s.login))] for s in twins} | {BO: [Attempt({}, text="words")]})
+    listed = write_list(tmp_path / "list.csv", [*twins, BO, PAT])
+    outcome = collect(course, [packed(tmp_path / "a.zip", files)], [listed])
+    assert outcome.unsettled == ["bo_cruz", "kim1", "kim2"] and outcome.missing == ["pobrien"]
 
 
 # --- what is of another assignment ----------------------------------------------------------------------------------
