@@ -27,12 +27,15 @@ COLUMNS = {
     "lms_id": "lms_user_id; canvas_user_id; canvas user id",
     "sid": "sis user id; sis_user_id; id number; idnumber; id-nummer; orgdefinedid; org defined id; sid; student id; "
     "matrikelnummer; numéro d'identification; número de id",
-    "number": "number; participant; identifier; id.; identifikator; identifiant; identificador",
+    "number": "number; participant; identifier; id.; kennung; identifikator; identifiant; identificador",
     "group": "group; groups; group_name; group name; team; gruppe; gruppen; groupe; grupo",
+    "role": "role",
 }
 KIND_OF = {name: kind for kind, names in COLUMNS.items() for name in names.split("; ")}
 PEOPLE = ("id", "login", "email", "lms_id", "sid", "number", "name", "first", "last")
 NOBODY = re.compile(r"(points possible|student, test|test student|.*manual posting.*)", re.IGNORECASE)
+STUDENT = re.compile("student|learner|participant|étudiant|estudiante|teilnehm|studierend|studente", re.IGNORECASE)
+PARTICIPANT = re.compile(r"[^\d]+? ?(\d+)")  # Moodle's "Participant 12"
 LARGEST = 20_000_000  # bytes
 ROWS = 12  # among which the row with the columns' names is looked for
 
@@ -88,6 +91,8 @@ def _learn(person, row, who):
     last, comma, first = who.name.partition(", ")
     if comma and not (person.first or person.last):  # Canvas's sortable name
         person.first, person.last = first, last
+    elif " " in who.name and not comma and not (person.first or person.last):
+        person.first, _, person.last = who.name.rpartition(" ")
     person.learn(who)
     person.groups |= {group.strip() for group in re.split("[;,]", row.get("group", "")) if group.strip()}
     person.listed = True
@@ -96,10 +101,11 @@ def _learn(person, row, who):
 def _rows(path):
     """The rows of a class list that name somebody, as {what it says: value}."""
     text = _text(path)
-    table = []
+    table, understood = [], set()
     for delimiter in ",;\t":
         rows = list(csv.reader(text.splitlines(), delimiter=delimiter))
         for position, row in enumerate(rows[:ROWS]):
+            understood |= {name for name in _names(row) if name in KIND_OF}
             heads = _heads(row)
             if len(set(heads) & set(PEOPLE)) > len(set(table[0]) if table else ()):
                 table = [heads, *rows[position + 1 :]]
@@ -107,7 +113,8 @@ def _rows(path):
         raise CourseError(
             f"{path}: this is no class list: its first row has to name columns such as id, login, email, first_name, last_name, "
             "lms_user_id, or as Canvas, Moodle, Blackboard, Brightspace, Sakai and Gradescope call them. "
-            "A table of Excel has to be saved as CSV first."
+            "A table of Excel has to be saved as CSV first. "
+            + (f"Understood was {', '.join(sorted(understood))} alone." if understood else "No column was understood.")
         )
     heads = table[0]
     for row in table[1:]:
@@ -116,8 +123,12 @@ def _rows(path):
             value = cell.strip().removeprefix("#").strip()  # Brightspace's, so that Excel takes no number out of it
             if head and value and head not in found:
                 found[head] = value
-        if participant := re.fullmatch(r"[^\d]+? ?(\d+)", found.get("number", "")):  # Moodle's "Participant 12"
+        if " " in found.get("id", "") and PARTICIPANT.fullmatch(found["id"]):
+            found.setdefault("number", found.pop("id"))
+        if participant := PARTICIPANT.fullmatch(found.get("number", "")):
             found["number"] = participant[1]
+        if found.get("role") and not STUDENT.search(found["role"]):
+            continue
         if any(found.get(kind) for kind in PEOPLE) and not NOBODY.fullmatch(found.get("name", "")):
             yield found
 
@@ -136,9 +147,13 @@ def _text(path):
     return content.decode("latin-1")
 
 
+def _names(row):
+    return [" ".join(cell.strip().strip('"').casefold().split()) for cell in row]
+
+
 def _heads(row):
     """What each column of a table says, "" for one that says nothing of people."""
-    names = [" ".join(cell.strip().strip('"').casefold().split()) for cell in row]
+    names = _names(row)
     heads = [KIND_OF.get(name, "") for name in names]
     for place, name in enumerate(names):
         if name == "id":  # Canvas's number; Sakai's, which nothing else uses; nbgrader's

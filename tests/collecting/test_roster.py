@@ -52,6 +52,16 @@ LISTS = {
         "id,first_name,last_name,email,lms_user_id\nagarcia,Ana,García-Núñez,ana@example.org,48288\n", "agarcia",
     ),
     "github": ('"identifier","github_username","github_id","name"\n"agarcia","anag","1","Ana García-Núñez"\n', "agarcia"),
+    "moodle's worksheet in German": (
+        "Kennung;Vollständiger Name;E-Mail-Adresse\nTeilnehmer/in 12;Ana García-Núñez;ana@example.org\n", "ana@example.org",
+    ),
+    "with an ID that is a number": (
+        "ID;Vollständiger Name;E-Mail-Adresse\nTeilnehmer/in 12;Ana García-Núñez;ana@example.org\n", "ana@example.org",
+    ),
+    "gradescope with roles": (
+        "Name,SID,Email,Role\nAna García-Núñez,0012,ana@example.org,Student\nPat Lee,7,p@example.org,Instructor\n"
+        "Kim Lee,8,k@example.org,TA\n", "ana@example.org",
+    ),
     "names alone": ("Name\nAna García-Núñez\n", "Ana_García-Núñez"),
 }  # fmt: skip
 
@@ -111,3 +121,15 @@ def test_one_id_of_two_people_is_said_with_both(tmp_path):
         read(tmp_path, "username,name,email\n" + rows)
     people = read(tmp_path, "id,name,email\nagarcia,Ana García,ana@example.org\nagarcia,\"García, Ana\",a2@example.org\n")
     assert set(people.all) == {"agarcia"}
+
+
+def test_a_full_name_goes_into_the_table_in_two(tmp_path):
+    (person,) = read(tmp_path, "Kennung;Vollständiger Name\nTeilnehmer/in 12;Ana Maria García\n").all.values()
+    assert (person.first, person.last) == ("Ana Maria", "García") and person.keys["number"] == {"12"}
+
+
+def test_which_columns_were_understood_is_said(tmp_path):
+    with pytest.raises(CourseError, match="Understood was gruppe, role alone."):
+        read(tmp_path, "Gruppe,Role,Note\nA,Learner,1\n")
+    with pytest.raises(CourseError, match="No column was understood."):
+        read(tmp_path, "a,b\n1,2\n")
