@@ -40,6 +40,8 @@ NO_GROUP = re.compile(
     re.IGNORECASE,
 )
 
+MANY = 3  # of one name: it is no name, but the word for participant
+
 
 def folded(name: str) -> str:
     """A full name as it stands in a file's (downloader.php, then PARAM_FILE)."""
@@ -55,7 +57,8 @@ def sort(download, notebooks, people):
     parts = {path: PART.fullmatch(path.parts[0]) for path in download.files}
     found = {part[0]: part for part in parts.values() if part}.values()
     names, numbers = {folded(part["name"]) for part in found}, {part["number"] for part in found}
-    blind = names <= PARTICIPANT or len(names) == 1 and len(numbers) > 1
+    blind = names <= PARTICIPANT or len(names) == 1 and len(numbers) >= MANY
+    blind = blind and not any(people.named(name, FORM) for name in names)
     teams = any(part["number"] is None for part in found)
     groups = _groups(download, parts)
     for path, part in parts.items():

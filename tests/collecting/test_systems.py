@@ -283,11 +283,16 @@ def test_one_name_under_two_numbers_is_nobody_even_where_the_list_has_it_once(co
 
 
 def test_a_name_that_all_have_is_the_word_for_participant(course, submitted, work, tmp_path):
-    files = downloads.moodle({s: [Attempt(work(s.login))] for s in ODD[:2]}, who=lambda _: "Osaleja")
-    outcome = collect(course, [packed(tmp_path / "a.zip", files)])
-    assert submitted() == {}
-    whose = {one.whose for some in outcome.left.values() for one in some}
-    assert whose == {"no. 1048288", "no. 1048291"}
+    def left(students, *lists):
+        files = downloads.moodle({s: [Attempt(work(s.login))] for s in students}, who=lambda _: "Osaleja")
+        outcome = collect(course, [packed(tmp_path / "a.zip", files)], lists)
+        assert submitted() == {}
+        return [one for some in outcome.left.values() for one in some]
+
+    assert {one.whose for one in left(ODD[:3])} == {"no. 1048288", "no. 1048291", "no. 1048300"}
+    assert all("several people in this download have one name" in one.why for one in left(ODD[:2]))
+    (tmp_path / "list.csv").write_text("id,name\no,Osaleja\n")
+    assert all("several people in this download have one name" in one.why for one in left(ODD[:3], tmp_path / "list.csv"))
 
 
 def test_moodles_groups(course, submitted, work, tmp_path):
