@@ -68,6 +68,7 @@ class Folder:
         self.known = known  # {path: Origin} of what was collected before
         self.came = Came(person.id, Who(), form)
         self.taken: set[PurePosixPath] = set()
+        self.replaced: dict[tuple[str, str], list[str]] = defaultdict(list)  # on no other ground than (made, made before)
 
     def take(self, pieces) -> Came:
         """Write what is new; pieces: [(Who, Piece)]"""
@@ -75,6 +76,12 @@ class Folder:
         chosen = self.chosen(pieces)
         for place, candidate in sorted(chosen.items()):
             self._put(place, candidate)
+        for (made, before), places in self.replaced.items():
+            how = "would be replaced" if self.dry_run else "replaced"
+            self.came.say(
+                f"{', '.join(places)} {how}: the download of {_day(made)} counts as newer than that of {_day(before)}; "
+                "`--dry-run` shows this before it is done"
+            )
         times = [candidate.time for candidate in chosen.values() if candidate.time]
         self.came.late = any(candidate.piece.late for candidate in chosen.values())
         if times:
@@ -221,6 +228,8 @@ class Folder:
             self._leave(candidate, f"{self._name(place)} is newer, and stays", look=False)
             self.came.say(f"an older {place} was not taken")
         else:
+            if new.only_by_download(old):
+                self.replaced[new.made, old.made].append(place)
             self.known[place] = new
             self.taken.add(candidate.piece.file)
             return True
@@ -271,3 +280,7 @@ def unpacked(content: bytes) -> dict[str, bytes]:
     while files and len({path.partition("/")[0] for path in files}) == 1 and all("/" in path for path in files):
         files = {path.partition("/")[2]: entry for path, entry in files.items()}
     return files
+
+
+def _day(made):
+    return made[:16].replace("T", " ") or "an unknown day"

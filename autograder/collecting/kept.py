@@ -28,6 +28,10 @@ class Origin:
     order: tuple = ()
     made: str = ""
 
+    def only_by_download(self, other: "Origin") -> bool:
+        """Whether nothing but when the downloads were made tells which of two is older."""
+        return not (self.time and other.time or self.form == other.form and self.order and other.order)
+
     def is_older(self, other: "Origin") -> bool:
         """Whether this is known to be older work than the other."""
         if self.time and other.time:

@@ -55,6 +55,15 @@ def test_of_downloads_without_times_the_one_made_later_counts(course, submitted,
         with zipfile.ZipFile(tmp_path / name, "w") as made:
             for path, content in downloads.moodle({ANA: [Attempt(work(day, "1_rotation"))]}).items():
                 made.writestr(zipfile.ZipInfo(path, (2026, 11, day, 8, 0, 0)), content)
+    outcome = collect(course, [tmp_path / "submissions.zip"], dry_run=True)
+    assert outcome.came[0].remarks == []
+    collect(course, [tmp_path / "submissions.zip"])
+    for dry, how in ((True, "would be replaced"), (False, "replaced")):
+        (came,) = collect(course, [tmp_path / "submissions (1).zip"], dry_run=dry).came
+        assert came.remarks == [
+            f"1_rotation.ipynb {how}: the download of 2026-11-21 08:00 counts as newer than that of 2026-11-20 08:00; "
+            "`--dry-run` shows this before it is done"
+        ]
     paths = [tmp_path / "submissions (1).zip", tmp_path / "submissions.zip"]  # as a shell sorts them
     collect(course, paths)
     assert list(submitted().values()) == [work(21, "1_rotation")]
