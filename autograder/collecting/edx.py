@@ -13,7 +13,7 @@ from collections import defaultdict
 from pathlib import PurePosixPath
 
 from ..intake.archive import Refused
-from ..intake.naming import is_notebook
+from ..intake.naming import by_cells, is_notebook
 from .piece import Form, Found, Left, Piece, Who, own, share, stem_of
 
 UNIT = re.compile(r"\[\d+\].*")
@@ -40,6 +40,8 @@ def sort(download, notebooks, people):
         elif path != TABLE:
             left.append(Left("it is not named as Open edX names files", (str(path),)))
     ours = [unit for unit, files in units.items() if any(_is_ours(name, notebooks) for *_, name in files)]
+    if len(units) > 1 and not ours:
+        ours = [unit for unit, files in units.items() if any(_by_cells(download, path, notebooks) for path, *_ in files)]
     for unit, files in units.items():
         if len(units) > 1 and unit not in ours:
             left.append(Left("of another assignment", tuple(str(path) for path, *_ in files), look=False))
@@ -55,6 +57,13 @@ def sort(download, notebooks, people):
 
 def _is_ours(name, notebooks):
     return is_notebook(name) and stem_of(name, notebooks)
+
+
+def _by_cells(download, path, notebooks):
+    try:
+        return by_cells(download.read(path), notebooks)
+    except Refused:
+        return None
 
 
 def _table(download):

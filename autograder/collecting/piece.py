@@ -77,7 +77,7 @@ class Form:
     """A form of download.
 
     title: the system and what to press there; fits: the share of the files that are named by its rule, 0 to 1; sort: the
-    files with whose they are, given the names of the released notebooks and what is known of people; folded: a name as the
+    files with whose they are, given the released notebooks by name and what is known of people; folded: a name as the
     system changes it, to be compared; blind: whether the download names nobody
     """
 

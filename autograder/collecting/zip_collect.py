@@ -36,7 +36,7 @@ class Collector(FileNameCollectorPlugin):
             with ExitStack() as stack:
                 folders = inside if all(path.is_dir() for path in inside) else [unpacked]
                 downloads = [stack.enter_context(Download(path)) for path in folders]
-                for _, form, view, by_person, left in by_download(downloads, people, list(course.notebooks)):
+                for _, form, view, by_person, left in by_download(downloads, people, course.notebooks):
                     for person, whose in by_person.items():
                         chosen = Folder(course, view, form, {}, person, None, True, left).chosen(whose)
                         for place, candidate in chosen.items():
