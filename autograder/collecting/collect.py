@@ -70,14 +70,14 @@ def _collect(course, paths, lists, system, zone, dry_run):
     whose_left: set[str] = set()
     with ExitStack() as stack:
         downloads = [stack.enter_context(Download(path)) for path in _separate(paths)]
-        found = list(by_download(downloads, people, list(course.notebooks), system))
+        found = list(by_download(downloads, people, course.notebooks, system))
         if not system:
             _of_this_assignment(course, found)
         for download, form, view, by_person, left in found:
             for person, whose in by_person.items():
                 folder = Folder(course, view, form, kept.files.setdefault(person.id, {}), person, zone, dry_run, left)
                 outcome.came.append(folder.take(whose))
-                if not outcome.came[-1].notebooks and not any(map(_is_zip, whose)):
+                if outcome.came[-1].found and not outcome.came[-1].notebooks and not any(map(_is_zip, whose)):
                     files = "1 file" if len(whose) == 1 else f"{len(whose)} files"
                     outcome.came[-1].say(f"no notebook of this assignment among {files}", look=True)
                 who = whose[0][0]

@@ -33,6 +33,7 @@ class Came:
     written: list[str] = field(default_factory=list)
     time: datetime | None = None
     late: bool = False
+    found: bool = False  # whether any of the files could be read and taken
     remarks: list[str] = field(default_factory=list)
     look: bool = False  # whether a remark asks for something to be done
 
@@ -74,6 +75,7 @@ class Folder:
         """Write what is new; pieces: [(Who, Piece)]"""
         self.came.who = pieces[0][0]
         chosen = self.chosen(pieces)
+        self.came.found = bool(chosen)
         for place, candidate in sorted(chosen.items()):
             self._put(place, candidate)
         for (made, before), places in self.replaced.items():
@@ -165,7 +167,7 @@ class Folder:
 
     def _compare(self, place, best, others):
         """Say what the other candidates for a place were."""
-        seen = {best.digest}
+        seen, several = {best.digest}, []
         for other in reversed(others):
             self.taken.add(other.piece.file) if other.digest in seen else None
             if other.digest in seen:
@@ -175,8 +177,13 @@ class Folder:
                 self._leave(other, f"{place} was handed in again, and the newer one counts", look=False)
             else:
                 why = "nothing says which is newer"
-                self._leave(other, f"there are several files of {place} and {why}; {best.piece.path} was taken")
-                self.came.say(f"several files of {place}, and {why}: {best.piece.path} was taken", look=True)
+                taken = _told_apart([best.piece, other.piece])[0]
+                self._leave(other, f"there are several files of {place} and {why}; {taken} was taken")
+                several.append(other.piece)
+        if several:
+            paths = _told_apart([best.piece, *several])
+            why = "nothing says which is newer"
+            self.came.say(f"several files of {place} ({', '.join(paths)}), and {why}: {paths[0]} was taken", look=True)
 
     def _leave(self, candidate, why, look=True):
         self.left.append(Left(why, (str(candidate.piece.file),), str(candidate.who), look))
@@ -284,3 +291,13 @@ def unpacked(content: bytes) -> dict[str, bytes]:
 
 def _day(made):
     return made[:16].replace("T", " ") or "an unknown day"
+
+
+def _told_apart(pieces):
+    """The paths of pieces in the submission; in the download, where those are the same."""
+    paths = [str(piece.path) for piece in pieces]
+    if len(set(paths)) == len(paths):
+        return paths
+    files = [piece.file.parts for piece in pieces]
+    same = next((i for i, parts in enumerate(zip(*files)) if len(set(parts)) > 1), 0)
+    return ["/".join(parts[same:]) for parts in files]

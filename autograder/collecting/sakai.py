@@ -32,7 +32,7 @@ ADDED = {"timestamp.txt", "members.txt", "comments.txt", "feedbackText.html"}
 FEEDBACK = re.compile(
     "feedback|retroaliment|rétroaction|commentaire|comentari|realiment|riscontr|フィードバック", re.IGNORECASE
 )
-MEMBER = re.compile(r"\s*(?P<name>[^;()]*)\((?P<eid>[^;()\s]+)\)\s*(?:;|$)")
+MEMBER = re.compile(r"\s*(?P<name>[^;()\n]*)\((?P<eid>[^;()\s]+)\)[^\S\n]*(?:;|\n|$)")
 BLANK = re.compile(r"<[^>]*>|&nbsp;|\s")
 
 

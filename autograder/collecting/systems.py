@@ -35,6 +35,8 @@ def recognised(download: Download, wanted: str | None = None) -> tuple[Form, Dow
         raise CourseError(f"There is no system {wanted!r}; choose from {', '.join(FORMS)}.")
     forms = [FORMS[wanted]] if wanted else [form for form in FORMS.values() if form is not plain.FORM]
     found = list(_fitting(forms, download)) or list(_fitting([plain.FORM], download))
+    if not download.files:
+        raise CourseError(" ".join((f"{download.name}: there is no file to be taken in it.", *download.problems[:3])))
     if not found or not wanted and found[0][0] <= ENOUGH:
         fits = f"as {FORMS[wanted].title} names them" if wanted else "as any system that is known names them"
         raise CourseError(
@@ -92,7 +94,7 @@ def _fitting(forms, download) -> Iterator[tuple[float, Form, Download]]:
 
 
 def _some(download):
-    return ", ".join(str(path)[:100] for path in list(download.files)[:3]) or "(there are none)"
+    return ", ".join(str(path)[:100] for path in list(download.files)[:3])
 
 
 def _instead():

@@ -18,10 +18,14 @@ def table(outcome: Outcome) -> list[tuple[str, str, str, str, str]]:
             f"{came.form.name}: {came.who}",
             ", ".join(came.notebooks) if len(came.notebooks) < 3 else f"{len(came.notebooks)} notebooks",
             _handed_in(came, outcome.zone),
-            "; ".join((*([] if came.written else ["nothing new"]), *came.remarks)),
+            "; ".join((*_nothing(came), *came.remarks)),
         )
         for came in outcome.came
     ]
+
+
+def _nothing(came: Came) -> list[str]:
+    return [] if came.written else ["nothing new"] if came.found else ["nothing could be taken"]
 
 
 def _handed_in(came: Came, zone: tzinfo | None) -> str:
@@ -66,4 +70,5 @@ def _some(names):
 
 
 def needs_a_look(outcome: Outcome) -> bool:
-    return any(one.look for left in outcome.left.values() for one in left) or any(came.look for came in outcome.came)
+    left = [one for some in outcome.left.values() for one in some]
+    return any(each.look for each in (*left, *outcome.came)) or not outcome.came and any(one.files for one in left)

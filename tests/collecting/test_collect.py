@@ -412,6 +412,18 @@ def test_odd_archives_cost_themselves_alone(course, submitted, work, tmp_path):
     assert "50 MB packed into" in said and "it is a link" in said and "more than once" in said
 
 
+def test_what_is_encrypted_is_not_called_old(course, work, tmp_path):
+    where = packed(tmp_path / "a.zip", downloads.canvas({ANA: [Attempt(work("a"))]}))
+    raw = bytearray(where.read_bytes())
+    for mark, flags in ((b"PK\3\4", 6), (b"PK\1\2", 8)):
+        place = -1
+        while (place := raw.find(mark, place + 1)) >= 0:
+            raw[place + flags] |= 1
+    where.write_bytes(raw)
+    outcome = collect(course, [where])
+    assert table(outcome)[0][4] == "nothing could be taken" and "encrypted" in reasons(outcome)[0].why
+
+
 def test_what_cannot_be_read_is_said_before_anything_is_written(course, work, tmp_path):
     good = blackboard(tmp_path, {ANA: [Attempt(work("a"))]})
     (tmp_path / "broken.zip").write_bytes(good.read_bytes()[:-30])

@@ -10,6 +10,7 @@ from downloads import ODD, START, Attempt, Student, later, of_30, packed, unpack
 from autograder.collecting.collect import collect
 from autograder.collecting.people import folder_name
 from autograder.collecting.systems import FORMS
+from autograder.collecting.told import needs_a_look
 from autograder.course import CourseError
 
 
@@ -387,6 +388,24 @@ def test_sakais_plus_one_is_another_file_and_not_a_newer_one(course, submitted, 
     assert outcome.came[0].look and "nothing says which is newer" in outcome.came[0].remarks[0]
 
 
+def test_sakai_in_an_unknown_language_shows_in_which_folder_a_file_lies(course, work, tmp_path):
+    files = downloads.sakai({ODD[0]: [Attempt(work("a", "1_rotation"))]}, word="Liitteet")
+    (path,) = (name for name in files if name.endswith("1_rotation.ipynb"))
+    files[path.replace("Liitteet", "Palaute")] = work("teacher")["1_rotation.ipynb"]
+    (came,) = collect(course, [packed(tmp_path / "a.zip", files)]).came
+    assert came.look and "Liitteet/1_rotation.ipynb" in came.remarks[0] and "Palaute/1_rotation.ipynb" in came.remarks[0]
+
+
+@pytest.mark.parametrize("between", ["; ", ";\n", "\r\n", "\n"])
+def test_sakais_members_stand_in_one_line_or_in_several(course, submitted, work, tmp_path, between):
+    members = between.join(("García-Núñez, Ana(agarcia)", "O'Brien, Pat(pobrien)", ""))
+    files = {"Lab/Cruz, Bo/members.txt": members.encode()}
+    files |= {f"Lab/Cruz, Bo/Submission attachment(s)/{name}": content for name, content in work("both").items()}
+    outcome = collect(course, [packed(tmp_path / "a.zip", files)])
+    assert submitted() == {who: work("both") for who in ("agarcia", "pobrien")}
+    assert {came.who.name for came in outcome.came} == {"García-Núñez, Ana", "O'Brien, Pat"}
+
+
 def test_sakais_groups_and_anonymous_folders(course, submitted, work, tmp_path):
     files = {
         "Lab/Cruz, Bo/members.txt": "García-Núñez, Ana(agarcia); O'Brien, Pat(pobrien); ".encode(),
@@ -406,6 +425,15 @@ def test_edx_names_nobody_by_32_digits(course, submitted, work, tmp_path):
     files = downloads.edx({nobody: [Attempt(work("x"))], ODD[0]: [Attempt(work("a"))]})
     outcome = collect(course, [packed(tmp_path / "a.zip", files)])
     assert set(submitted()) == {"agarcia"} and not accounted(files, outcome)
+
+
+def test_edx_knows_the_assignment_by_cells_where_names_say_nothing(course, submitted, work, tmp_path):
+    mine = {f"file {i}.ipynb": content for i, content in enumerate(work("a").values())}
+    collect(course, [packed(tmp_path / "a.zip", downloads.edx({ODD[0]: [Attempt(mine)]}))])
+    assert submitted() == {"agarcia": work("a")}
+    other = {"essay.ipynb": b'{"cells": [], "metadata": {}, "nbformat": 4, "nbformat_minor": 5}'}
+    outcome = collect(course, [packed(tmp_path / "b.zip", downloads.edx({ODD[0]: [Attempt(other)]}))])
+    assert not outcome.came and needs_a_look(outcome)
 
 
 def test_edx_finds_the_whole_name_in_its_table(course, submitted, work, tmp_path):
@@ -452,7 +480,6 @@ def test_zip_files_of_students(course, submitted, work, tmp_path):
         {"1_rotation.ipynb": b"{}"},
         {"Ana Garcia - 1_rotation.ipynb": b"{}", "Bo - 1_rotation.ipynb": b"{}"},
         {"readme.txt": b""},
-        {},
     ],
 )
 def test_what_is_of_no_system_is_refused_with_those_that_are_known(course, tmp_path, files):
@@ -469,6 +496,12 @@ def test_what_is_of_no_system_is_refused_with_those_that_are_known(course, tmp_p
 def test_a_system_that_is_asked_for_and_not_known(course, tmp_path, system, says):
     with pytest.raises(CourseError, match=says):
         collect(course, [packed(tmp_path / "a.zip", {"a": b""})], system=system)
+
+
+def test_an_empty_download_is_said(course, tmp_path):
+    with pytest.raises(CourseError) as refused:
+        collect(course, [packed(tmp_path / "a.zip", {})])
+    assert str(refused.value) == "a: there is no file to be taken in it."
 
 
 def test_a_system_that_is_asked_for_counts(course, submitted, work, tmp_path):
