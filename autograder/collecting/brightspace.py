@@ -3,7 +3,8 @@
 A folder for each submission, `N-N - NAME - Mon D, YYYY HMM AM`, the time without a colon and not padded (`926 PM`, `1226 AM`),
 and an index.html beside them; in another version the files of all lie side by side, with ` - NAME.ext` behind that. NAME may
 hold ` - `. The sources are public scripts that read them (such as jdmau72/Grading-Tools-). They agree that the first number
-differs from student to student, or from attempt to attempt, and not on what the second one is. The time is the server's local time.
+differs from student to student, or from attempt to attempt, and not on what the second one is. The time is the
+server's local time.
 """
 
 import re

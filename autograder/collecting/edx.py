@@ -41,7 +41,9 @@ def sort(download, notebooks, people):
             left.append(Left("it is not named as Open edX names files", (str(path),)))
     ours = [unit for unit, files in units.items() if any(_is_ours(name, notebooks) for *_, name in files)]
     if len(units) > 1 and not ours:
-        ours = [unit for unit, files in units.items() if any(_by_cells(download, path, notebooks) for path, *_ in files)]
+        ours = [
+            unit for unit, files in units.items() if any(_by_cells(download, path, notebooks) for path, *_ in files)
+        ]
     for unit, files in units.items():
         if len(units) > 1 and unit not in ours:
             left.append(Left("of another assignment", tuple(str(path) for path, *_ in files), look=False))

@@ -69,7 +69,8 @@ class Folder:
         self.known = known  # {path: Origin} of what was collected before
         self.came = Came(person.id, Who(), form)
         self.taken: set[PurePosixPath] = set()
-        self.replaced: dict[tuple[str, str], list[str]] = defaultdict(list)  # on no other ground than (made, made before)
+        # {(when the download was made, and the one before): places} of what is replaced on no other ground
+        self.replaced: dict[tuple[str, str], list[str]] = defaultdict(list)
 
     def take(self, pieces) -> Came:
         """Write what is new; pieces: [(Who, Piece)]"""
@@ -177,11 +178,11 @@ class Folder:
                 self._leave(other, f"{place} was handed in again, and the newer one counts", look=False)
             else:
                 why = "nothing says which is newer"
-                taken = _told_apart([best.piece, other.piece])[0]
+                taken = _told_apart([best, other])[0]
                 self._leave(other, f"there are several files of {place} and {why}; {taken} was taken")
-                several.append(other.piece)
+                several.append(other)
         if several:
-            paths = _told_apart([best.piece, *several])
+            paths = _told_apart([best, *several])
             why = "nothing says which is newer"
             self.came.say(f"several files of {place} ({', '.join(paths)}), and {why}: {paths[0]} was taken", look=True)
 
@@ -293,11 +294,11 @@ def _day(made):
     return made[:16].replace("T", " ") or "an unknown day"
 
 
-def _told_apart(pieces):
-    """The paths of pieces in the submission; in the download, where those are the same."""
-    paths = [str(piece.path) for piece in pieces]
+def _told_apart(candidates):
+    """The paths of files in the submission; in the download, where those are the same."""
+    paths = [str(one.piece.path / one.inside) for one in candidates]
     if len(set(paths)) == len(paths):
         return paths
-    files = [piece.file.parts for piece in pieces]
+    files = [(one.piece.file / one.inside).parts for one in candidates]
     same = next((i for i, parts in enumerate(zip(*files)) if len(set(parts)) > 1), 0)
     return ["/".join(parts[same:]) for parts in files]

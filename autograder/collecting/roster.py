@@ -42,7 +42,8 @@ ROWS = 12  # among which the row with the columns' names is looked for
 
 def read(path: Path, people: People) -> None:
     """Add who is in a class list to `people`; raises CourseError when it is none, or is unsure who somebody is."""
-    unsure, here = [], {}
+    unsure: list[str] = []
+    here: dict[Person, Who] = {}
     for row in _rows(path):
         who = Who(**{kind: row.get(kind, "") for kind in ("name", "login", "email", "lms_id", "sid", "number")})
         first, last = row.get("first", ""), row.get("last", "")
@@ -57,7 +58,9 @@ def read(path: Path, people: People) -> None:
             if person in here and not any(row.get(kind) for kind in ("id", *KINDS)):
                 unsure.append(f"{path}: {who}: the list has this name twice; give it a column that tells them apart.")
             if person in here and _is_another(who, here[person]):
-                unsure.append(f"{path}: {here[person]} and {who}: two people of one id, {person.id}; give one another id.")
+                unsure.append(
+                    f"{path}: {here[person]} and {who}: two people of one id, {person.id}; give one another id."
+                )
                 continue
             here.setdefault(person, who)
             _learn(person, row, who)

@@ -52,7 +52,9 @@ def recognised(download: Download, wanted: str | None = None) -> tuple[Form, Dow
         )
     _, form, view = best[0]
     if form is plain.FORM and not wanted and (why := plain.doubt(view, download.name)):
-        raise CourseError(f"{download.name}: {why}. {_instead()} With --from plain each folder is taken for a student's.")
+        raise CourseError(
+            f"{download.name}: {why}. {_instead()} With --from plain each folder is taken for a student's."
+        )
     if form is plain.FORM and not wanted and (inner := _inner(view)):
         name, title = inner
         raise CourseError(f"{download.name}: {name} in it is a download of its own ({title}); collect that by itself.")

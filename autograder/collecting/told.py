@@ -71,4 +71,5 @@ def _some(names):
 
 def needs_a_look(outcome: Outcome) -> bool:
     left = [one for some in outcome.left.values() for one in some]
-    return any(each.look for each in (*left, *outcome.came)) or not outcome.came and any(one.files for one in left)
+    nothing = not outcome.came and any(one.files for one in left)
+    return nothing or any(one.look for one in left) or any(came.look for came in outcome.came)

@@ -32,7 +32,9 @@ def test_what_it_says(course, work, tmp_path, slow):
         "agarcia" in said and "canvas: garcíanúñezana (no. 48288)" in said and "5 notebooks" in said and "LATE" in said
     )
     assert "left: de_lacruzbo (no. 48291): a text instead of a file" in said
-    assert "Nothing handed in: pobrien." in said and "Left, see above: bo_cruz." in said and "5 files were written" in said
+    assert (
+        "Nothing handed in: pobrien." in said and "Left, see above: bo_cruz." in said and "5 files were written" in said
+    )
     code, said = run(course, "collect", str(where), "--students", str(listed))
     assert code == 1 and "Nothing is new: 1 student, all as they were." in said
 

@@ -119,7 +119,7 @@ def test_one_id_of_two_people_is_said_with_both(tmp_path):
         read(tmp_path, "id,name,email\n" + rows)
     with pytest.raises(CourseError, match="two people of one id, agarcia"):
         read(tmp_path, "username,name,email\n" + rows)
-    people = read(tmp_path, "id,name,email\nagarcia,Ana García,ana@example.org\nagarcia,\"García, Ana\",a2@example.org\n")
+    people = read(tmp_path, 'id,name,email\nagarcia,Ana García,ana@example.org\nagarcia,"García, Ana",a2@example.org\n')
     assert set(people.all) == {"agarcia"}
 
 

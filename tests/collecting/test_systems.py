@@ -293,7 +293,9 @@ def test_a_name_that_all_have_is_the_word_for_participant(course, submitted, wor
     assert {one.whose for one in left(ODD[:3])} == {"no. 1048288", "no. 1048291", "no. 1048300"}
     assert all("several people in this download have one name" in one.why for one in left(ODD[:2]))
     (tmp_path / "list.csv").write_text("id,name\no,Osaleja\n")
-    assert all("several people in this download have one name" in one.why for one in left(ODD[:3], tmp_path / "list.csv"))
+    assert all(
+        "several people in this download have one name" in one.why for one in left(ODD[:3], tmp_path / "list.csv")
+    )
 
 
 def test_moodles_groups(course, submitted, work, tmp_path):
@@ -393,7 +395,9 @@ def test_sakai_in_an_unknown_language_shows_in_which_folder_a_file_lies(course, 
     (path,) = (name for name in files if name.endswith("1_rotation.ipynb"))
     files[path.replace("Liitteet", "Palaute")] = work("teacher")["1_rotation.ipynb"]
     (came,) = collect(course, [packed(tmp_path / "a.zip", files)]).came
-    assert came.look and "Liitteet/1_rotation.ipynb" in came.remarks[0] and "Palaute/1_rotation.ipynb" in came.remarks[0]
+    assert (
+        came.look and "Liitteet/1_rotation.ipynb" in came.remarks[0] and "Palaute/1_rotation.ipynb" in came.remarks[0]
+    )
 
 
 @pytest.mark.parametrize("between", ["; ", ";\n", "\r\n", "\n"])
