@@ -51,7 +51,8 @@ def doubt(download, around: str) -> str:
     if deep or any(map(ZIP.fullmatch, loose)):
         return f"nothing tells whether {lone} is a student's folder, or the one around the students' folders"
     called = lone.casefold()
-    if len(set(notebooks)) < len(notebooks) or called == ASSIGNMENT or around.casefold().startswith(called):
+    whole = re.compile(rf"{re.escape(called)}(?![^\W_])")
+    if len(set(notebooks)) < len(notebooks) or called == ASSIGNMENT or whole.match(around.casefold()):
         return (
             f"all notebooks lie in one folder, {lone}, as Google Classroom gives them, and nothing tells whose they are; "
             "if they are one student's, put them into a folder called as the student is"
