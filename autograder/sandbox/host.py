@@ -220,7 +220,7 @@ class NotebookProcess:
             outputs = [dict(output) for output in reply["outputs"]]
             count = reply["execution_count"]
             return CellRun(
-                outputs, count if type(count) is int else None, reply["ended"] is True, reply["failed"] is True
+                outputs, count if type(count) is int else None, reply["ended"] is True, reply.get("failed") is True
             )
         except (KeyError, TypeError, ValueError) as error:
             raise self._ended("killed", "its process gave an answer that the grader's own code never gives") from error

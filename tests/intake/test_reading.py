@@ -231,11 +231,7 @@ def changed_files(draw):
             cell["metadata"] = draw(VALUES.filter(lambda value: not isinstance(value, dict)))
     raw = {field: raw[field] for field in draw(st.permutations(list(raw)))}
     text = json.dumps(raw, indent=draw(st.sampled_from([None, 1, "\t"])), ensure_ascii=True)
-    text = (
-        draw(st.sampled_from(["", "\n", " \t\r\n", "[I 12:00:00] Saving file\n"]))
-        + text
-        + draw(st.sampled_from(["", "\n", "\n}]}", "\0\0"]))
-    )
+    text = draw(st.sampled_from(["", "\n", " \t\r\n"])) + text + draw(st.sampled_from(["", "\n", "\n}]}", "\0\0"]))
     return text.encode(draw(st.sampled_from(ENCODINGS))), name
 
 
@@ -405,3 +401,10 @@ def test_an_integer_of_countless_digits_is_no_obstacle(course):
     )
     assert b"7" * 10_000 in content
     assert kept(content, course.notebooks[NAME]) == kept(as_bytes(solution(NAME)), course.notebooks[NAME])
+
+
+def test_a_line_that_a_program_has_put_in_front(course):
+    content = as_bytes(solution(NAME))
+    assert kept(b"[I 12:00:00] Saving file\n" + content, course.notebooks[NAME]) == kept(
+        content, course.notebooks[NAME]
+    )
