@@ -36,10 +36,14 @@ class Collector(FileNameCollectorPlugin):
             with ExitStack() as stack:
                 folders = inside if all(path.is_dir() for path in inside) else [unpacked]
                 downloads = [stack.enter_context(Download(path)) for path in folders]
+                for download in downloads:
+                    download.files = _as_it_came(download.files)
                 for _, form, view, by_person, left in by_download(downloads, people, course.notebooks):
                     for person, whose in by_person.items():
                         chosen = Folder(course, view, form, {}, person, None, True, left).chosen(whose)
                         for place, candidate in chosen.items():
+                            if candidate.inside:  # nbgrader copies whole files: the intake unpacks this one
+                                place = str(candidate.piece.path)
                             told = {"student_id": person.id, "file_id": place}
                             time = {"timestamp": candidate.time.isoformat()} if candidate.time else {}
                             found[view.place(candidate.piece.file).resolve()] = told | time
@@ -48,3 +52,9 @@ class Collector(FileNameCollectorPlugin):
         except CourseError as error:
             self.log.error("%s", error)
         return found
+
+
+def _as_it_came(files):
+    """The files of a download without those that nbgrader has unpacked from a student's zip, into a folder beside it."""
+    zips = {path.with_suffix("") for path in files if path.suffix.lower() == ".zip"}
+    return {path: where for path, where in files.items() if zips.isdisjoint(path.parents)}

@@ -15,6 +15,7 @@ from support import run, scores
 from test_systems import write_list
 
 from autograder.course import Course
+from autograder.intake.sorting import sort
 
 ANA, BO = ODD[0], ODD[1]
 
@@ -78,6 +79,19 @@ def test_nbgraders_zip_collect_takes_the_same(whole, work, tmp_path, nbgrader, n
     assert {path.name: path.read_bytes() for path in folder.glob("*.ipynb")} == work(ANA.login)
     assert len(whole.students()) == 2
     assert (folder / "timestamp.txt").exists() == (name == "blackboard")
+
+
+def test_nbgraders_zip_collect_never_writes_a_zip_under_a_notebook_s_name(whole, work, tmp_path, nbgrader):
+    archive = whole.root / "downloaded" / "transforms" / "archive"
+    archive.mkdir(parents=True)
+    inside = packed(tmp_path / "hw.zip", work(ANA.login)).read_bytes()
+    packed(archive / "a.zip", downloads.blackboard({ANA: [Attempt({"hw.zip": inside})]}))
+    done = nbgrader(whole, "zip_collect", "transforms")
+    assert done.returncode == 0, done.stderr
+    assert (whole.submitted("agarcia") / "hw.zip").read_bytes() == inside
+    assert sort(
+        {path.name: path.read_bytes() for path in whole.submitted("agarcia").glob("*")}, whole.notebooks
+    ).notebooks == {name.removesuffix(".ipynb"): content for name, content in work(ANA.login).items()}
 
 
 def table(course, name, *options):
