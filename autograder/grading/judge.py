@@ -131,8 +131,10 @@ def _run(intake, released, keys, process, verdicts, skip, public, examples):
                 return None
         elif name not in verdicts:
             call = partial(process.call, name)
-            verdict = examine(name, keys[name], call)
-            verdicts[name] = explained(verdict, failures.values(), _solution(intake, released, name))
+            verdicts[name] = examine(name, keys[name], call)
+            if not verdicts[name].right:
+                solution = _solution(intake, released, name)
+                verdicts[name] = explained(verdicts[name], failures.values(), solution)
             if name in public and (example := public_example.find(verdicts[name], public[name], call)):
                 examples[name] = example
             if process.gone:

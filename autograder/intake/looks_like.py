@@ -2,7 +2,8 @@
 
 import ast
 import re
-import warnings
+
+from .python_text import tree_of
 
 AGAIN = "hand in the notebook itself (in Jupyter: File > Download)"
 PULL = "hand in the file itself (on your machine: `{}` fetches it)"
@@ -114,11 +115,8 @@ def _other_json(found):
 
 
 def _is_python(text):
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            tree = ast.parse(text)
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
+    tree = tree_of(text)
+    if tree is None:
         code = r"^(?:def \w+\(.*|class \w+.*:|import [\w.]+(?: as \w+)?|from [\w.]+ import .*|# ?%%.*|# In\[.*)$"
         return re.search(code, text, re.MULTILINE) is not None
     return any(isinstance(node, (ast.FunctionDef, ast.Import, ast.ImportFrom, ast.ClassDef)) for node in tree.body)

@@ -27,10 +27,11 @@ def parsed(source: str) -> ast.Module | None:
     if "%%" in text and (found := re.match(RUNS_ITS_BODY, text)):
         text = "\n" * found[0].count("\n") + text[found.end() :]
     text = OWN_VALUE.sub(r"\1 None", OWN_LINE.sub(r"\1pass", text))
-    return _tree(text) or _tree(textwrap.dedent(text))  # IPython runs a cell that is indented as a whole
+    return tree_of(text) or tree_of(textwrap.dedent(text))  # IPython runs a cell that is indented as a whole
 
 
-def _tree(text):
+def tree_of(text: str) -> ast.Module | None:
+    """The syntax tree of a text as it stands, or None where it is no Python."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of escapes such as "\d"
@@ -158,7 +159,7 @@ def continues(first: str, second: str) -> bool:
     """Whether two cells are the halves of one that was split in the middle of a statement."""
     first, second = OWN_LINE.sub(r"\1pass", first), OWN_LINE.sub(r"\1pass", second)
     begins_within = re.match(r"(?:[ \t]*(?:#.*)?\n)*(?:[ \t]+\S|[)\]}])", second)
-    return bool(begins_within or _tree(first) is None) and _tree(f"{first}\n{second}") is not None
+    return bool(begins_within or tree_of(first) is None) and tree_of(f"{first}\n{second}") is not None
 
 
 def imports(source: str) -> str:

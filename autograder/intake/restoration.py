@@ -122,11 +122,9 @@ class Restoration:
             chosen = self.one_of(name)
             if chosen is not None and not self.is_given(chosen, name):
                 self._as_code(chosen, name)
-                for copy_of_it in [cell for cell in self.cells if cell not in self.name and cell.source.strip()]:
-                    if self.is_given(
-                        copy_of_it, name
-                    ):  # it would define the function once more, and undo the student's
-                        self._drop(copy_of_it)
+                unnamed = [cell for cell in self.cells if cell not in self.name and cell.source.strip()]
+                for stub in [cell for cell in unnamed if self.is_given(cell, name)]:
+                    self._drop(stub)  # it would define the function once more, and undo the student's
                 continue
             others = [cell for cell in self._writers(solves) if cell not in self.name] or self._texts(solves)
             if chosen is None and not others:

@@ -18,7 +18,7 @@ from .python_text import checks
 from .reading import LARGEST, Unreadable, cells
 
 PACKAGE = "transform_lab"  # the students' package: nobody's work, and the grader uses the course's own
-RECEIPTS = ("timestamp.txt", "submission_secret.txt")  # nbgrader's
+TIMESTAMP, SECRET = "timestamp.txt", "submission_secret.txt"  # written by `nbgrader submit`
 ZIPPED = (
     ".docx",
     ".xlsx",
@@ -192,7 +192,7 @@ def _about_file(path, content, notebooks, chosen):
     name = by_name(PurePosixPath(path).stem, notebooks)
     if name and name[0] not in chosen and not _may_be_notebook(path, content):
         return [f"{path}: it is not the notebook; hand in {name[0]}.ipynb itself."]
-    if not chosen and path not in RECEIPTS and not _may_be_notebook(path, content):
+    if not chosen and path not in (TIMESTAMP, SECRET) and not _may_be_notebook(path, content):
         return [f"{path}: not graded; it is no notebook."]
     return []
 
@@ -216,9 +216,7 @@ def _candidate(path, content, notebooks, problems):
     """The Candidate that a file is, or None, and a problem that says why."""
     filename = PurePosixPath(path).name
     called, numbers = by_name(filename if is_notebook(filename) else PurePosixPath(path).stem, notebooks) or ("", ())
-    if called and any(
-        f'"{name}"'.encode() in content for name in notebooks[called].cells
-    ):  # it need not be read for this
+    if called and any(f'"{name}"'.encode() in content for name in notebooks[called].cells):  # not read for this
         return Candidate(path, content, notebooks[called], True, numbers)
     try:
         found = cells(content)

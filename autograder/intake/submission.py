@@ -18,9 +18,18 @@ from ..untrusted import printable
 from .archive import UNPRINTABLE
 from .naming import is_notebook
 from .reading import LARGEST
-from .sorting import LARGEST_FILES, LARGEST_NOTEBOOKS, MOST_FILES, MOST_NOTEBOOKS, PACKAGE, Room, sort
+from .sorting import (
+    LARGEST_FILES,
+    LARGEST_NOTEBOOKS,
+    MOST_FILES,
+    MOST_NOTEBOOKS,
+    PACKAGE,
+    SECRET,
+    TIMESTAMP,
+    Room,
+    sort,
+)
 
-TIMESTAMP, SECRET = "timestamp.txt", "submission_secret.txt"  # written by `nbgrader submit`
 NOT_HANDED_IN = "{}: not handed in; 0 points."
 
 

@@ -37,7 +37,7 @@ def is_complete(course, student, grades):
     summary = course.feedback(student) / SUMMARY
     if not pages and not recorded_alone(course, student):
         return True
-    told = _digest(course, student, grades).encode()
+    told = _digest(course, student, grades, recorded(course, student)).encode()
     return all(map(_is_whole, [*pages, summary])) and told in summary.read_bytes()
 
 
@@ -51,13 +51,13 @@ def _is_whole(page):
         return False
 
 
-def _digest(course, student, grades):
+def _digest(course, student, grades, records):
     """Stands in the summary for the grades and the grading that it was made from, and for what made it."""
-    graded = [(name, record["seed"], record["graded"]) for name, record in recorded(course, student).items()]
+    graded = [(name, record["seed"], record["graded"]) for name, record in records.items()]
     told = (
         digests.of_pages(course),
         graded,
-        _problems(course, student),
+        _problems(course, student, records),
         {name: asdict(of) for name, of in grades.items()},
     )
     return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
@@ -85,13 +85,12 @@ def _one(course, student, grades):
     return None
 
 
-def _problems(course, student):
-    """What was odd about a student's files, but for what is not among them."""
-    records = recorded(course, student).values() or filter(None, [recorded_alone(course, student)])
+def _problems(course, student, records):
+    """What was odd about a student's files, but for what is not among them; records: those of the notebooks"""
+    found = records.values() or filter(None, [recorded_alone(course, student)])
     absent = {NOT_HANDED_IN.format(f"{name}.ipynb") for name in course.notebooks}
-    return [
-        line for line in dict.fromkeys(line for record in records for line in record["problems"]) if line not in absent
-    ]
+    lines = dict.fromkeys(line for record in found for line in record["problems"])
+    return [line for line in lines if line not in absent]
 
 
 def summary(course, student, grades):
@@ -116,8 +115,8 @@ def summary(course, student, grades):
         waiting=sum(cell["waiting"] for notebook in notebooks for cell in notebook["questions"]),
         begin=next(wrong, None),
         all_right=all(cell["right"] for notebook in notebooks for cell in notebook["exercises"]),
-        problems=_problems(course, student),
-        digest=_digest(course, student, grades),
+        problems=_problems(course, student, records),
+        digest=_digest(course, student, grades, records),
     )
 
 
