@@ -19,6 +19,7 @@ from transform_lab.judging.plain import PlainCase, PlainExercise
 from transform_lab.judging.reading import Unfit
 
 PUBLIC_SEED = 24  # the cases students see; any other seed draws hidden ones
+ORDER = 1  # with the seed, what the order of the cases is drawn from
 DIGITS = 12  # decimals kept of arguments and right answers: far below the tolerance of 1e-6
 DIGITS_WRONG = 8  # of wrong answers, which are most of the key
 PROTOCOL = 4  # of pickle; from 5 on, arrays do not own their numbers
@@ -84,8 +85,13 @@ class Exercise:
 
 
 def key(exercise: Exercise, seed: int) -> PlainExercise:
-    """The exercise with the cases drawn from `seed`, as the plain data that `transform_lab.judging.verdict.examine` takes."""
+    """The exercise with the cases drawn from `seed`, as the plain data that `transform_lab.judging.verdict.examine` takes.
+
+    Hidden cases come in an order of their own, so that a call's number tells nothing about it; public ones, which are read,
+    as the specification has them.
+    """
     cases = exercise.cases(np.random.default_rng(seed))
+    order = range(len(cases)) if seed == PUBLIC_SEED else np.random.default_rng([seed, ORDER]).permutation(len(cases))
     return {
         "parameters": [str(p).partition("=")[0] for p in signature(exercise.reference).parameters.values()],
         "returns": exercise.returns,
@@ -93,7 +99,7 @@ def key(exercise: Exercise, seed: int) -> PlainExercise:
         "credit": exercise.credit,
         "weights": {case.family: exercise.weights.get(case.family, 1) for case in cases},
         "misconceptions": [{"id": m.id, "says": m.says, "hint": m.hint} for m in exercise.misconceptions],
-        "cases": [_case(exercise, case) for case in cases],
+        "cases": [_case(exercise, cases[number]) for number in order],
     }
 
 

@@ -1,12 +1,16 @@
-"""Many submissions at once: workers grade, one writer records, what is unchanged is left alone.
+"""Many submissions at once: workers read and grade, one writer records, what is unchanged is left alone.
 
-Nothing that one student hands in may stop the others: whatever goes wrong with a submission is said, and the rest goes on.
+Nothing that one student hands in may stop the others. What cannot be judged earns nothing and is said, in a row, on a
+page and in a line; only what this machine lacks (a disk, a database) leaves a student ungraded, until the next time.
 """
 
-from concurrent.futures import FIRST_COMPLETED, wait
-from concurrent.futures.process import BrokenProcessPool
+from functools import partial
+
+from sqlalchemy.exc import SQLAlchemyError
 
 from ..intake.submission import submission_of
+from .failure import Failure
+from .grade import grade_submission, not_judged
 from .records import recorded, recorded_alone
 from .workers import Processes
 
@@ -16,59 +20,64 @@ def grade_class(course, students, run, writer, jobs, force=False, cluster=None):
 
     cluster: the workers.Cluster to use instead of processes of this machine, as many as `jobs`
     """
-    known = writer.students()
-    if cluster:
-        cluster.load(run)
-    pool, running = cluster or Processes(run, jobs), {}
+    known = frozenset() if force else frozenset(writer.students())
+    for student, found in _found(course, students, run, jobs, known, cluster):
+        if isinstance(found, Failure):
+            if not found.of_content:
+                yield student, None, found.words
+                continue
+            found = not_judged(course, student, run, found.words)
+        if found is None:
+            yield student, None, None
+            continue
+        problem = _record(writer, found)
+        if problem and problem.of_content:
+            found = not_judged(course, student, run, problem.words)
+            problem = _record(writer, found)
+        yield student, None if problem else found, problem and problem.words
+
+
+def _found(course, students, run, jobs, known, cluster):
+    """Yields (student, Graded, None when unchanged, or Failure)."""
+    if not cluster:
+        yield from Processes(partial(_graded, course, run, known), jobs).each(students)
+        return
+    aside = []
+
+    def submissions():
+        for student, read in Processes(partial(_submission, course, run, known), jobs).each(students):
+            if read is None or isinstance(read, Failure):
+                aside.append((student, read))
+            else:
+                yield read
+
+    for submission, found in cluster.each(submissions(), run):
+        yield from aside
+        aside.clear()
+        yield submission.student, found
+    yield from aside
+
+
+def _graded(course, run, known, student):
+    submission = _submission(course, run, known, student)
+    return submission and grade_submission(submission, run)
+
+
+def _submission(course, run, known, student):
+    """What a student of those `known` handed in, or None when it is unchanged."""
+    submission = submission_of(course, student)
+    return None if student in known and _unchanged(course, submission, run) else submission
+
+
+def _record(writer, graded):
+    """Record; a Failure, or None."""
     try:
-        for student in [*students, None]:  # None: all are on their way
-            if student is not None:
-                try:
-                    submission = submission_of(course, student)
-                    unchanged = not force and student in known and _unchanged(course, submission, run)
-                except OSError as error:
-                    yield student, None, _words(error)
-                    continue
-                if unchanged:
-                    yield student, None, None
-                    continue
-                running[pool.submit(submission)] = submission
-            while running and (student is None or len(running) >= pool.ahead):
-                done = wait(running, return_when=FIRST_COMPLETED).done
-                if any(isinstance(future.exception(), BrokenProcessPool) for future in done):
-                    # One of these brought a worker down: graded one by one, only that one fails.
-                    pool.close()
-                    suspects, running = list(running.values()), {}
-                    for submission in suspects:
-                        alone = Processes(run, 1)
-                        future = alone.submit(submission)
-                        wait([future])
-                        alone.close()
-                        yield _record(writer, submission.student, future)
-                    pool = Processes(run, jobs)
-                    continue
-                for future in done:
-                    yield _record(writer, running.pop(future).student, future)
-    finally:
-        if pool is not cluster:  # which belongs to the caller
-            pool.close()
-
-
-def _record(writer, student, future):
-    error = future.exception()
-    if type(error).__name__ in ("BrokenProcessPool", "KilledWorker"):  # of the pool, of Dask
-        return student, None, "its grading process ended all of a sudden; is there enough memory?"
-    if error is not None:
-        return student, None, _words(error)
-    try:
-        writer.record(future.result())
-    except Exception as error:  # a full disk, a locked database, …: said for this student, and tried again next time
-        return student, None, _words(error)
-    return student, future.result(), None
-
-
-def _words(error):
-    return f"{type(error).__name__}: {' '.join(str(error).split())}"[:300]
+        writer.record(graded)
+    except SQLAlchemyError as error:
+        return Failure(Failure.of(error).words, of_content=False)  # locked, full, read-only, …
+    except Exception as error:
+        return Failure.of(error)
+    return None
 
 
 def _unchanged(course, submission, run):

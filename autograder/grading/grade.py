@@ -5,6 +5,7 @@
 `grade_submission` is a pure function of its arguments, so any concurrent.futures.Executor can run it anywhere.
 """
 
+import os
 import secrets
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
@@ -17,17 +18,21 @@ from transform_lab.judging.verdict import Verdict
 
 from ..course import Course
 from ..exercises import EXERCISES, key
-from ..intake.restore import Intake, restore
-from ..intake.submission import Submission
+from ..intake.restore import Intake, restore, without_work
+from ..intake.submission import Submission, receipts
 from ..released import Released
 from ..sandbox import Limits, Sandbox
 from . import digests
+from .failure import Failure
 from .judge import Row, judge, rows
 from .public_example import public_cases
 from .records import RECORD, missing, told
 
 if TYPE_CHECKING:
     from .marks import Marks
+
+
+NOT_JUDGED = "it could not be judged ({}); look at it by hand"
 
 
 @dataclass(frozen=True)
@@ -60,6 +65,12 @@ class Graded:
     receipts: dict[str, str] = field(default_factory=dict)  # {file name: text}, see submission.receipts
     record: dict = field(default_factory=dict)  # of the submission, where there is no notebook that could hold it
 
+    def add(self, released: Released, intake: Intake, verdicts: dict[str, Verdict], text: str, marks: "Marks") -> None:
+        """One graded notebook."""
+        self.rows += rows(released, verdicts)
+        self.notebooks[released.name], self.marks[released.name] = text, marks
+        self.problems += intake.problems
+
 
 def grading_run(
     course: Course,
@@ -85,8 +96,6 @@ def new_seed() -> int:
 
 def grade_submission(submission: Submission, run: GradingRun) -> Graded:
     """Grade one student's submission: a Graded with a row for every exercise of the assignment."""
-    from .marks import marks  # here, because it imports nbgrader, which takes longer than to check one student's files
-
     graded = Graded(submission.student, problems=list(submission.problems), receipts=submission.receipts)
     with run.sandbox(submission) as sandbox:
         for name, released in run.released.items():
@@ -94,15 +103,43 @@ def grade_submission(submission: Submission, run: GradingRun) -> Graded:
             if content is None:
                 graded.rows += missing(released)
                 continue
-            intake = restore(content, released)
-            verdicts = grade_notebook(intake, released, run, sandbox, submission)
-            graded.rows += rows(released, verdicts)
-            graded.notebooks[name] = nbformat.v4.writes(intake.notebook) + "\n"
-            graded.marks[name] = marks(intake.notebook)
-            graded.problems += intake.problems
+            try:
+                graded.add(released, *_graded(restore(content, released), released, run, sandbox, submission))
+            except Exception as error:
+                failure = Failure.of(error)
+                if not failure.of_content:
+                    raise
+                intake = without_work(released, "unreadable", NOT_JUDGED.format(failure.words))
+                graded.add(released, *_graded(intake, released, run, sandbox, submission))
     if not graded.notebooks:
         graded.record = {"problems": graded.problems, **_grading(submission, run)}
     return graded
+
+
+def not_judged(course: Course, student: str, run: GradingRun, why: str) -> Graded:
+    """The Graded of a submission that this machine could not read or judge; it is tried again with the next `grade`.
+
+    why: as the end of a sentence
+    """
+    folder = course.submitted(student)
+    there = [name for name in run.released if os.path.lexists(folder / f"{name}.ipynb")] or list(run.released)
+    graded = Graded(student, receipts=receipts(folder)[0])
+    with run.sandbox(empty := Submission(student, {})) as sandbox:
+        for name, released in run.released.items():
+            if name in there:
+                intake = without_work(released, "killed", NOT_JUDGED.format(why))
+                graded.add(released, *_graded(intake, released, run, sandbox, empty))
+            else:
+                graded.rows += missing(released)
+    return graded
+
+
+def _graded(intake, released, run, sandbox, submission):
+    """(Intake, its Verdicts, the graded notebook as text, its Marks)"""
+    from .marks import marks  # here, because it imports nbgrader, which takes longer than to check one student's files
+
+    verdicts = grade_notebook(intake, released, run, sandbox, submission)
+    return intake, verdicts, nbformat.v4.writes(intake.notebook) + "\n", marks(intake.notebook)
 
 
 def _grading(submission, run):

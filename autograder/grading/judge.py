@@ -4,10 +4,9 @@ A test cell's own code is never run: where it stands, the judge calls the functi
 exercise, and compares what comes back. So nothing a student redefines in the notebook has a say.
 """
 
-import time
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import cache
 from types import MappingProxyType
 
 import nbformat
@@ -23,6 +22,7 @@ from ..sandbox import Ended, Sandbox
 from ..untrusted import safe
 from . import public_example
 from .failed_cells import FailedCell, explained, failed, stopped
+from .telling import Telling
 
 MOST_RESTARTS = 10  # times a notebook is run again without the cell or call that brought its process down
 
@@ -68,14 +68,15 @@ def judge(
     examples: dict[str, str] = {}
     verdicts = {name: Verdict(name, status, says=STATUSES[status].means) for name, status in intake.statuses.items()}
     if set(verdicts) != set(released.points):
-        skip: dict[int, FailedCell] = {}
-        deadline = time.monotonic() + sandbox.limits.notebook
+        run = _Run(intake, released, keys, public, verdicts, examples)
+        time, at_once = sandbox.time(), False
         for _ in range(MOST_RESTARTS + 1):
-            with sandbox.notebook(deadline) as process:
-                culprit = _run(intake, released, keys, process, verdicts, skip, public, examples)
-            if culprit is None or process.exhausted:
+            with sandbox.notebook(time) as process:
+                whole = run.through(process, at_once)
+            if _left(time) <= 0 or whole and set(verdicts) == set(released.points):
                 break
-        status = "timeout" if process.exhausted else "error"
+            at_once = at_once or whole
+        status = "timeout" if _left(time) <= 0 else "error"
         for name in released.points:
             verdicts.setdefault(name, Verdict(name, status, says="The notebook did not get as far as this cell."))
     for cell in intake.notebook.cells:
@@ -99,48 +100,83 @@ def score(verdict: Verdict, points: float) -> float:
     return points if verdict.right else max(0.0, min(round(verdict.credit * points, 2), points - 0.01))
 
 
-def _run(intake, released, keys, process, verdicts, skip, public, examples):
-    """Run the notebook from its start; returns the position of a cell that brought the process down, or None.
+class _Run:
+    """A notebook that is run from its start, once, or again without the cells that brought its process down.
 
-    skip: {position: FailedCell} of those that did so before; that cell is added. What the course's own notebook imports is
-    there from the start, whatever else a student has written into the cell that imports it.
+    What a function is asked with must not be seen in the notebook's outputs: others would have it from the pages. So all
+    cells are run first, and each exercise is judged in a snapshot of the process, taken where its test cell stands.
     """
-    failures = dict(skip)
-    try:
-        process.prepare(_imports(released))
-    except Ended as ended:
-        intake.say(released, f"it could not be started: {ended.reason}")
-    for position, cell in enumerate(intake.notebook.cells):
-        if cell.cell_type != "code" or position in skip:
-            continue
-        name = _exercise(cell, released)
-        if name is None:
+
+    def __init__(self, intake, released, keys, public, verdicts, examples):
+        self.intake, self.released, self.keys, self.public = intake, released, keys, public
+        self.verdicts, self.examples = verdicts, examples  # to be filled in
+        self.skip: dict[int, FailedCell] = {}  # {position: the cell that brought the process down}
+        self.failures: dict[int, FailedCell] = {}
+
+    def through(self, process, at_once):
+        """Run all cells, then judge; whether it came to its end, and need not be run again without another cell.
+
+        What the course's own notebook imports is there from the start, whatever else a student has written into the cell that
+        imports it. at_once: judge where the test cells stand, in the notebook's own process, and keep no outputs; for those of
+        which there is no snapshot, since the student's code left no room for it, or ended it
+        """
+        self.failures, snapshots = {**(self.failures if at_once else {}), **self.skip}, {}
+        try:
+            process.prepare(_imports(self.released))
+        except Ended as ended:
+            self.intake.say(self.released, f"it could not be started: {ended.reason}")
+        for position, cell in enumerate(self.intake.notebook.cells):
+            name = _exercise(cell, self.released)
+            if cell.cell_type != "code" or position in self.skip or name in self.verdicts:
+                continue
             try:
-                run = process.run_cell(cell.source)
+                if name is None and self._run_cell(process, cell, position, at_once):
+                    _end(self.intake, self.released, self.verdicts, position)
+                    break
+                elif name and at_once:
+                    self._judge(name, process)
+                elif name:
+                    snapshots[name] = process.snapshot()
             except Ended as ended:
-                cell.outputs = [nbformat.from_dict(_stopped(ended))]
-                intake.say(released, f"cell {position + 1} had to be stopped: {ended.reason}")
-                skip[position] = stopped(cell.source, ended.reason)
-                return position
-            cell.outputs = [nbformat.from_dict(output) for output in map(safe, run.outputs) if output]
-            cell.execution_count = run.execution_count
-            if run.failed:
-                failures[position] = failed(cell.source, cell.outputs)
-            if run.ended:
-                _end(intake, released, verdicts, position)
-                return None
-        elif name not in verdicts:
-            call = partial(process.call, name)
-            verdicts[name] = examine(name, keys[name], call)
-            if not verdicts[name].right:
-                solution = _solution(intake, released, name)
-                verdicts[name] = explained(verdicts[name], failures.values(), solution)
-            if name in public and (example := public_example.find(verdicts[name], public[name], call)):
-                examples[name] = example
+                if not at_once:
+                    cell.outputs = [nbformat.from_dict(_stopped(ended))]
+                self.intake.say(self.released, f"cell {position + 1} had to be stopped: {ended.reason}")
+                self.skip[position] = stopped(cell.source, ended.reason)
+                if process.exhausted:
+                    break
+                return False
             if process.gone:
-                skip[position] = stopped(cell.source, "its function's process ended")
-                return position
-    return None
+                self.skip[position] = stopped(cell.source, "its function's process ended")
+                return False
+        asked = {name: taken for name, taken in snapshots.items() if taken.meets()}
+        # All public cases before the first hidden one: what they are answered with is shown.
+        answers = {name: public_example.answers(name, self.public.get(name), taken) for name, taken in asked.items()}
+        for name, taken in asked.items():
+            self._judge(name, taken, answers[name])
+        return True
+
+    def _run_cell(self, process, cell, position, at_once):
+        """Run a cell of the student's; whether it ended the notebook."""
+        run = process.run_cell(cell.source)
+        outputs = [nbformat.from_dict(output) for output in map(safe, run.outputs) if output]
+        if not at_once:
+            cell.outputs, cell.execution_count = outputs, run.execution_count
+            if run.failed:
+                self.failures[position] = failed(cell.source, outputs)
+        return run.ended
+
+    def _judge(self, name, process, answers=()):
+        """Reach the verdict on an exercise; by the `answers` to public cases alone where one of those calls had no end."""
+        solution = _solution(self.intake, self.released, name)
+        replies = process.calls(name, self.keys[name]["cases"])
+        if answers and not answers[-1].reply.finished:
+            replies = iter([answers[-1].reply])
+        verdict = examine(name, self.keys[name], lambda *_: next(replies), Telling(answers, solution))
+        if not verdict.right:
+            verdict = explained(verdict, self.failures.values(), solution)
+            if example := public_example.find(verdict, self.public.get(name), answers):
+                self.examples[name] = example
+        self.verdicts[name] = verdict
 
 
 @cache
@@ -166,6 +202,10 @@ def _end(intake, released, verdicts, position):
         name = _exercise(cell, released)
         if name:
             verdicts.setdefault(name, Verdict(name, "error", says=says, hint="Take that call out."))
+
+
+def _left(time):
+    return min(allowance.left for allowance in time)
 
 
 def _exercise(cell, released):

@@ -33,11 +33,7 @@ def restore(content: bytes, released: Released) -> Intake:
     try:
         found = cells(content)
     except Unreadable as unreadable:
-        intake = Intake(copy.deepcopy(released.notebook), dict.fromkeys(released.points, "unreadable"))
-        intake.say(released, f"it cannot be read: {unreadable}")
-        note = nbformat.v4.new_markdown_cell(f"**This notebook could not be read:** {unreadable}.", id="note")
-        intake.notebook.cells.insert(0, note)
-        return intake
+        return without_work(released, "unreadable", f"it cannot be read: {unreadable}")
     work = Restoration(found, released)
     work.recognise()
     work.join_halves()
@@ -48,4 +44,16 @@ def restore(content: bytes, released: Released) -> Intake:
     intake = Intake(work.notebook(), work.statuses)
     for line in work.said:
         intake.say(released, line)
+    return intake
+
+
+def without_work(released: Released, status: str, problem: str) -> Intake:
+    """The Intake of a file of which nothing can be judged: as released, with a note on top.
+
+    status: of all exercises; problem: why, as the end of a sentence
+    """
+    intake = Intake(copy.deepcopy(released.notebook), dict.fromkeys(released.points, status))
+    intake.say(released, problem)
+    note = nbformat.v4.new_markdown_cell(f"**This notebook was not judged:** {problem}.", id="note")
+    intake.notebook.cells.insert(0, note)
     return intake

@@ -81,7 +81,7 @@ def measure(exercise, tried, seeds, named=()):
                 if index not in endless:
                     try:
                         with bounded(LONGEST_RIGHT if each.right else LONGEST):
-                            number = cases.refusing(each.function, number)
+                            number = cases.refusing(each.fresh(), 0 if each.kind == "cheat" else number)
                     except TooLong:
                         endless.add(index)
                 if number is None:
@@ -94,8 +94,8 @@ def measure(exercise, tried, seeds, named=()):
 
 
 def slips_through(each, found):
-    """Whether something wrong is right in all the cases of some seed."""
-    return not each.right and bool(found.accepted)
+    """Whether something wrong is right in all the cases of some seed; cheats know the public ones."""
+    return not each.right and bool(set(found.accepted) - ({PUBLIC_SEED} if each.kind == "cheat" else set()))
 
 
 def refused(each, found):

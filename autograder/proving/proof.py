@@ -92,7 +92,9 @@ def _proof(course, name, seeds, measured):
     proof = Proof(EXERCISES[name], seeds, tried, found, made_no_longer(EXERCISES[name], tried))
     if proof.slipping:
         search = Search(EXERCISES[name], [each.function for each, what in proof.of("right") if not what.refused])
-        proof.cases = {each.label: search.case_for(each.function) for each, _ in proof.slipping}
+        proof.cases = {
+            each.label: None if each.kind == "cheat" else search.case_for(each.function) for each, _ in proof.slipping
+        }
     return proof
 
 

@@ -88,6 +88,8 @@ def _slipping(proof, root):
             yield from _where([each for each, _ in group], root)
         elif each.kind == "misconception":
             yield _point(f"{proof.exercise.name}: the misconception {each.label}, not caught on {seeds}.")
+        elif each.kind == "cheat":
+            yield _point(f"{proof.exercise.name}: a function that {each.label}, accepted on {seeds}.")
         else:
             yield _point(f"{proof.exercise.name}: the wrong solution {each.label}, accepted on {seeds}.")
         yield from _advice([each for each, _ in group], case)
@@ -97,6 +99,8 @@ def _advice(group, case):
     if case is not None:
         yield _detail("A case that would catch it:" if len(group) == 1 else "A case that would catch each of them:")
         yield _detail(case, 4)
+    elif group[0].kind == "cheat":
+        yield _detail("It looks at no argument: add cases with other answers, drawn from the generator.")
     elif group[0].kind == "mutant":
         yield _detail(f"{NO_CASE.format('equivalent')} If so, declare it in the specification's field `equivalent`:")
         yield _detail(f'"the reason": ({"".join(f"{quoted(each.label)}, " for each in group).strip()}),', 4)

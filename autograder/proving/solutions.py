@@ -1,4 +1,4 @@
-"""What an exercise is proved with: its misconceptions, mutants, the notebook's solution, and people's own solutions."""
+"""What an exercise is proved with: its misconceptions, mutants, cheats, the notebook's solution, and people's own solutions."""
 
 import ast
 import importlib
@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import nbformat
 
 from ..course import CourseError
+from .cheats import cheats
 from .errors import told
 from .mutants import Mutant, mutants
 
@@ -21,9 +22,9 @@ NOTEBOOK = "notebook: "  # begins what was changed in the notebook's solution
 class Tried:
     """One function that is called on all cases, and whether it has to be right in all of them."""
 
-    kind: str  # "misconception", "mutant", "equivalent", "right" or "wrong"
+    kind: str  # "misconception", "mutant", "equivalent", "right", "wrong" or "cheat"
     label: str  # unique among those of its kind
-    function: Callable
+    function: Callable  # of a cheat from nothing to a function that has not been called yet: it knows what it was asked
     mutant: Mutant | None = None
     misconception: str = ""  # its id
     notebook: bool = False  # it is the notebook's solution
@@ -31,6 +32,10 @@ class Tried:
     @property
     def right(self):
         return self.kind in ("equivalent", "right")
+
+    def fresh(self):
+        """The function as nobody has called it yet."""
+        return self.function() if self.kind == "cheat" else self.function
 
 
 def to_be_tried(course, exercise):
@@ -55,6 +60,7 @@ def to_be_tried(course, exercise):
         *([Tried("right", "the notebook's solution", solution, notebook=True)] if solution else []),
         *(Tried("right", label, function) for label, function in right.items()),
         *(Tried("wrong", label, function) for label, function in wrong.items()),
+        *(Tried("cheat", label, make) for label, make in cheats(exercise).items()),
     ]
 
 

@@ -1,7 +1,7 @@
 """Frames of JSON over a socket: the length in 4 bytes, then the text. Both ends of the sandbox use it.
 
-The receiving end treats every byte as a lie: a frame has a largest size, reading has a deadline, and an answer counts
-only with the nonce of the request it answers.
+The receiving end treats every byte as a lie: there is a bound to all frames together, reading has a deadline, and an
+answer counts only with the nonce of the request it answers.
 """
 
 import json
@@ -10,7 +10,7 @@ import struct
 import time
 
 LENGTH = struct.Struct(">I")
-LARGEST_FRAME = 4_000_000  # bytes; twice what a notebook may output
+MOST_RECEIVED = 4_000_000  # bytes in the life of a channel; twice what a notebook may output
 MOST_FORGED = 100  # frames that nobody asked for, in the life of a channel
 
 
@@ -23,17 +23,17 @@ class Late(Exception):
 
 
 class Garbled(Exception):
-    """What came is no frame, or is too large."""
+    """What came is no frame, or too much."""
 
 
 class Channel:
     """One end of a socket that carries frames.
 
-    largest: bytes of a frame that is taken; None for the notebook's end, which has the grader at its other end
+    most: bytes that are taken in all; None for the notebook's end, which has the grader at its other end
     """
 
-    def __init__(self, connection, largest=LARGEST_FRAME):
-        self.connection, self.largest = connection, largest
+    def __init__(self, connection, most=MOST_RECEIVED):
+        self.connection, self.most = connection, most
         self.buffer, self.forged = bytearray(), 0
 
     def send(self, message):
@@ -47,22 +47,24 @@ class Channel:
     def receive(self, deadline=None):
         """Read one frame, until `deadline` (time.monotonic) at most. What came before a Late is not lost."""
         self._fill(LENGTH.size, deadline)
-        (length,) = LENGTH.unpack(self.buffer[: LENGTH.size])
-        if self.largest is not None and length > self.largest:
-            raise Garbled(f"a frame of {length} bytes")
-        self._fill(LENGTH.size + length, deadline)
-        frame = bytes(self.buffer[LENGTH.size : LENGTH.size + length])
-        del self.buffer[: LENGTH.size + length]
+        size = LENGTH.size + LENGTH.unpack(self.buffer[: LENGTH.size])[0]
+        if self.most is not None and size > self.most:
+            raise Garbled("more than the grader takes")
+        self._fill(size, deadline)
+        frame = bytes(self.buffer[LENGTH.size : size])
+        del self.buffer[:size]
+        if self.most is not None:
+            self.most -= size
         try:
             return json.loads(frame)
         except (ValueError, RecursionError) as error:
             raise Garbled("not JSON") from error
 
-    def answer_to(self, nonce, deadline):
-        """The first frame that carries `nonce`; forged ones are passed over, a flood of them is Garbled."""
+    def answer_to(self, nonce, number, deadline):
+        """The first frame that carries `nonce` and `number` (None: none); forged ones are passed over, a flood is Garbled."""
         while self.forged < MOST_FORGED:
             message = self.receive(deadline)
-            if isinstance(message, dict) and message.get("nonce") == nonce:
+            if isinstance(message, dict) and (message.get("nonce"), message.get("number")) == (nonce, number):
                 return message
             self.forged += 1
         raise Garbled("a flood of frames that nobody asked for")
@@ -74,7 +76,7 @@ class Channel:
                 if not select.select([self.connection], [], [], left)[0]:
                     raise Late
             try:
-                chunk = self.connection.recv(1 << 16)
+                chunk = self.connection.recv(min(size - len(self.buffer), 1 << 16))  # no more: a descriptor may follow
             except OSError as error:
                 raise Closed from error
             if not chunk:

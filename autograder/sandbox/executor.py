@@ -234,23 +234,33 @@ class Executor:
             "failed": failed,
         }
 
-    def call(self, name, args, kwargs):
-        """Call a function of the notebook with plain arguments: a transform_lab.judging.verdict.Reply as a dictionary."""
+    def calls(self, name, cases):
+        """Call a function of the notebook with the plain arguments of each case, [args, kwargs]; nobody sees what it prints.
+
+        Yields a transform_lab.judging.verdict.Reply to each as a dictionary, with whether its arguments were "changed" in
+        their stead; the first that neither returned nor raised is the last.
+        """
         function = self.shell.user_ns.get(name)
+        for args, kwargs in cases:
+            reply = self._call(function, args, kwargs)
+            yield reply
+            if reply["outcome"] not in ("returned", "raised"):
+                break
+
+    def _call(self, function, args, kwargs):
         if not callable(function):
             return {"outcome": "undefined"}
         try:
             self.running = True
             reply = vars(call(function, args, kwargs))
+            return reply | {"arguments": None, "changed": reply["arguments"] not in (None, [args, kwargs])}
         except KeyboardInterrupt:
-            reply = {"outcome": "timeout"}
+            return {"outcome": "timeout"}
         except BaseException as error:  # SystemExit and whatever a student derived from BaseException
-            reply = {"outcome": "raised", "error": one_line(error)}
+            return {"outcome": "raised", "error": one_line(error)}
         finally:
             self.running = False
-        self._collect_raw()
-        self.outputs.take()  # what a function prints while it is graded is shown to nobody
-        return reply
+            self.outputs.take()
 
     async def _run(self, source):
         """As ipykernel does it; whether it ran without an error."""

@@ -158,7 +158,7 @@ def _notebook(libc, executor, rules, connection):
     os.setsid()
     os.closerange(3, connection.fileno())
     os.closerange(connection.fileno() + 1, os.sysconf("SC_OPEN_MAX"))
-    grader = Channel(connection, largest=None)
+    grader = Channel(connection, most=None)
     try:
         settings = grader.receive()
         for name, amount in settings["limits"].items():
@@ -172,13 +172,38 @@ def _notebook(libc, executor, rules, connection):
         sys.path.insert(0, settings["folder"])
         executor.start(settings["files"])
         grader.send({"ready": True})
-        actions = {"prepare": executor.prepare, "run_cell": executor.run_cell, "call": executor.call}
+        actions = {"prepare": executor.prepare, "run_cell": executor.run_cell}
         while True:
             request = grader.receive()
-            reply = actions[request["action"]](*request["arguments"])
-            grader.send({"nonce": request["nonce"], **reply})
+            nonce, arguments = request["nonce"], request["arguments"]
+            if request["action"] == "snapshot":
+                grader = _snapshot(grader, nonce)
+            elif request["action"] == "calls":
+                for number, reply in enumerate(executor.calls(*arguments)):
+                    grader.send({"nonce": nonce, "number": number, **reply})
+            else:
+                grader.send({"nonce": nonce, **actions[request["action"]](*arguments)})
     except Closed:
         os._exit(0)
+
+
+def _snapshot(grader, nonce):
+    """Fork this process: the copy, which stays as it is until it is asked something, listens to a connection of its own.
+
+    Returns the Channel to listen to, in either process.
+    """
+    _, (connection,), _, _ = socket.recv_fds(grader.connection, 1, 1)
+    try:
+        copied = os.fork() == 0
+    except OSError:
+        copied = False  # the grader sees its end of the connection closed
+    if copied:
+        grader.connection.close()
+        grader = Channel(socket.socket(fileno=connection), most=None)
+    else:
+        os.close(connection)
+    grader.send({"nonce": nonce, "process": os.getpid()})
+    return grader
 
 
 class _Capabilities(ctypes.Structure):

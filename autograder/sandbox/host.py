@@ -3,15 +3,18 @@
 import base64
 import os
 import secrets
+import select
 import shutil
 import signal
 import socket
+import struct
 import subprocess
 import sys
 import tempfile
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import NamedTuple
 
 from transform_lab.judging import codec
 from transform_lab.judging.verdict import Reply
@@ -19,13 +22,17 @@ from transform_lab.judging.verdict import Reply
 from .. import ASSIGNMENT
 from ..untrusted import printable
 from .account import Account
-from .bounds import COURSE, PATIENCE, Limits, NotStarted
+from .bounds import COURSE, PATIENCE, WALL, Allowance, Limits, NotStarted
 from .bubblewrap import Namespaces, copy_code
-from .channel import Channel, Closed, Garbled, Late
-from .watch import UserWatch, Watch
+from .channel import MOST_RECEIVED, Channel, Closed, Garbled, Late
+from .watch import UserWatch, Watch, waited
 
 NOBODY = 100_000  # when the grader is root, each notebook runs as a user of its own: this number and up
 GLANCE = 0.25  # seconds between two looks at what a sandbox uses
+MOST_OUTPUTS = 2_000  # that a notebook may make
+MOST_REPLIED = 1_000_000  # bytes that come of all calls of an exercise
+LINUX = sys.platform == "linux"
+CREDENTIALS = struct.Struct("3i")  # process, user, group: what the kernel tells of who sent something; see unix(7)
 ENVIRONMENT = {
     "OPENBLAS_NUM_THREADS": "1",
     "PATH": "/usr/bin:/bin",
@@ -51,6 +58,10 @@ class CellRun:
     execution_count: int | None = None
     ended: bool = False  # the cell called exit() or quit()
     failed: bool = False  # it raised an error
+
+
+FORGED = "its process gave an answer that the grader's own code never gives"
+ALL_OF_A_SUDDEN = "its process ended all of a sudden"
 
 
 class ForkServer:
@@ -119,30 +130,205 @@ class Sandbox:
         self.files = {path: base64.b64encode(content).decode() for path, content in (files or {}).items()}
 
     def __enter__(self):
-        self.deadline = time.monotonic() + self.limits.submission
+        self.whole = Time(Allowance(self.limits.submission), Allowance(self.limits.submission))
         return self
 
     def __exit__(self, *_):
         """Each notebook has cleaned up after itself."""
 
-    def notebook(self, deadline=None):
-        """A NotebookProcess in a new sandbox.
+    def time(self):
+        """The Time of one notebook, however often it is run, out of the submission's."""
+        return Time(*(Allowance(self.limits.notebook, whole) for whole in self.whole))
 
-        deadline: when the notebook's time is over (time.monotonic), for one that is run again
-        """
-        return NotebookProcess(self, min(deadline or time.monotonic() + self.limits.notebook, self.deadline))
+    def notebook(self, time=None):
+        """A NotebookProcess in a new sandbox."""
+        return NotebookProcess(self, time or self.time())
 
 
-class NotebookProcess:
-    """One notebook's process and all around it: a context manager with `run_cell` and `call`."""
+class Time(NamedTuple):
+    """What there is for a notebook's cells, and for the calls of its functions: none takes the others' time."""
 
-    def __init__(self, sandbox, deadline):
-        self.limits, self.deadline = sandbox.limits, deadline
-        self.gone, self.glanced = False, time.monotonic()  # gone: whether its process had to be stopped, or died
-        self.namespaces = self.account = self.folder = self.pid = self.handle = self.watch = None
-        connection, inside = socket.socketpair()
+    cells: Allowance
+    calls: Allowance
+
+
+class Asked:
+    """A process of a notebook's that answers requests, within its limits.
+
+    connection: the grader's end of the socket; most: bytes that are taken from it; watch: of its sandbox, None without one
+    """
+
+    def __init__(self, connection, most, limits, allowance):
         connection.settimeout(PATIENCE)
-        self.channel = Channel(connection)
+        self.channel, self.limits, self.allowance = Channel(connection, most), limits, allowance
+        self.gone = False  # whether it had to be stopped, or died
+        self.pid = self.handle = self.watch = None
+        self.glanced, self.waited = time.monotonic(), 0.0
+
+    def close(self):
+        self.allowance.use(-self._waited())
+        self.channel.connection.close()
+        if self.handle is not None:
+            os.close(self.handle)
+
+    @property
+    def exhausted(self):
+        """Whether the notebook's time is over."""
+        return self._left() <= 0
+
+    def _left(self):
+        """Seconds of its time; what it waited for a processor is only asked for when it matters."""
+        left = self.allowance.left
+        return left if left > self.limits.cell else left + self._waited()
+
+    def calls(self, name, cases):
+        """Call the notebook's function `name` with the plain arguments of each case: yields a Reply to each.
+
+        The first that is neither "returned" nor "raised" is the last; "timeout" and "killed" are outcomes.
+        """
+        try:
+            nonce = self._ask("calls", [name, [[case["args"], case["kwargs"]] for case in cases]])
+            for number, case in enumerate(cases):
+                reply = self._reply(self._answer(nonce, self.limits.call, number), case)
+                yield reply
+                if not reply.finished:
+                    return
+        except Ended as ended:
+            yield Reply(ended.status, error=ended.reason)
+
+    def call(self, name, args, kwargs):
+        """The Reply to one call."""
+        return next(self.calls(name, [{"args": args, "kwargs": kwargs}]))
+
+    def _reply(self, message, case):
+        """The Reply that a message is: of the arguments it tells whether they are as they were, and no more is kept."""
+        outcome, error, printed = message.get("outcome"), message.get("error", ""), message.get("printed", "")
+        try:
+            codec.decode(message.get("value"))
+            known = outcome in ("returned", "raised", "not done", "undefined", "timeout")
+            if not known or not isinstance(error, str) or not isinstance(printed, str):
+                raise codec.NotPlain("an unknown outcome")
+        except codec.NotPlain:
+            raise self._ended("killed", FORGED) from None
+        arguments = [case["args"], case["kwargs"]] if message.get("changed") is False else None
+        return Reply(outcome, message.get("value"), arguments, printable(error[:300]), printed[:300])
+
+    def _request(self, action, arguments, seconds):
+        return self._answer(self._ask(action, arguments), seconds)
+
+    def _ask(self, action, arguments):
+        """Send a request; returns the nonce of its answer."""
+        nonce = secrets.token_hex(16)
+        if self.gone or self.exhausted:
+            raise self._ended("timeout", "the notebook's time was over")
+        if time.monotonic() - self.glanced > GLANCE and (excess := self._excess()):
+            raise self._ended("killed", f"it used {excess}")
+        try:
+            self.channel.send({"nonce": nonce, "action": action, "arguments": arguments})
+        except (Closed, OSError) as error:
+            raise self._ended("killed", ALL_OF_A_SUDDEN) from error
+        return nonce
+
+    def _answer(self, nonce, seconds, number=None):
+        """The answer to a request, the one of that `number` if there are several; an interrupt ends what takes too long."""
+        start, seconds = time.monotonic(), seconds * self.allowance.patience
+        try:
+            try:
+                return self._wait(nonce, number, min(seconds, self._left()))
+            except Late:
+                self.allowance.limit_reached()
+                self._interrupt()
+                return self._wait(nonce, number, self.limits.grace)
+        except Late as error:
+            raise self._ended("timeout", "it took too long, and did not heed the interrupt") from error
+        except Closed as error:
+            raise self._ended("killed", ALL_OF_A_SUDDEN) from error
+        except (Garbled, OSError) as error:
+            raise self._ended("killed", "its process sent what the grader's own code never sends") from error
+        finally:
+            self.allowance.use(time.monotonic() - start)
+
+    def _wait(self, nonce, number, seconds):
+        """Raises Late after `seconds` in which the process could run."""
+        start, waited = time.monotonic(), None
+        until = latest = start + seconds
+        while True:
+            try:
+                return self.channel.answer_to(nonce, number, min(time.monotonic() + GLANCE, until))
+            except Late:
+                if excess := self._excess():
+                    raise self._ended("killed", f"it used {excess}")
+                if waited is None:
+                    waited = self._waited()
+                else:  # others kept the processor busy: that time is given back
+                    until = min(latest + self._waited() - waited, start + WALL * seconds)
+                if time.monotonic() >= until:
+                    raise
+
+    def _waited(self):
+        """Seconds in which it could have run, but others had the processor; as last seen, once it has ended."""
+        if self.watch and self.pid:
+            self.waited = max(self.waited, waited(self.pid))
+        return self.waited
+
+    def _excess(self):
+        self.glanced = time.monotonic()
+        return self.watch.excess() if self.watch else None
+
+    def _interrupt(self):
+        try:
+            if self.handle is not None:
+                signal.pidfd_send_signal(self.handle, signal.SIGINT)
+            else:
+                os.kill(self.pid, signal.SIGINT)
+        except ProcessLookupError:
+            pass  # it has just ended; the channel tells
+
+    def _ended(self, status, reason):
+        self.gone = True
+        return Ended(status, reason)
+
+
+class Snapshot(Asked):
+    """A copy of a notebook's process as it was where its exercise stands, which has run no cell since.
+
+    Nothing that it is asked can reach the notebook's own process, whose outputs were there before.
+    """
+
+    def __init__(self, connection, notebook, nonce):
+        super().__init__(connection, MOST_REPLIED, notebook.limits, notebook.time.calls)
+        self.watch, self.nonce = notebook.watch, nonce
+
+    def meets(self):
+        """Learn which process it is; whether there is one.
+
+        On Linux from the kernel: what the process says of itself is not to be trusted.
+        """
+        connection, start = self.channel.connection, time.monotonic()
+        try:
+            if not select.select([connection], [], [], min(self.limits.cell, self._left()))[0]:
+                return False
+            if LINUX:
+                _, said, _, _ = connection.recvmsg(1, socket.CMSG_SPACE(CREDENTIALS.size), socket.MSG_PEEK)
+            told = self.channel.answer_to(self.nonce, None, time.monotonic() + self.limits.grace)
+            self.pid = CREDENTIALS.unpack(said[0][2])[0] if LINUX else int(told["process"])
+            self.handle = os.pidfd_open(self.pid) if LINUX else None
+            return True
+        except (Closed, Late, Garbled, OSError, LookupError, TypeError, ValueError, struct.error):
+            return False
+        finally:
+            self.allowance.use(time.monotonic() - start)
+
+
+class NotebookProcess(Asked):
+    """One notebook's process and all around it: a context manager with `run_cell` and `snapshot`."""
+
+    def __init__(self, sandbox, time_of_it):
+        connection, inside = socket.socketpair()
+        super().__init__(connection, MOST_RECEIVED, sandbox.limits, time_of_it.cells)
+        self.time = time_of_it
+        self.namespaces = self.account = self.folder = None
+        self.snapshots, self.outputs_left = [], MOST_OUTPUTS
         settings = {"files": sandbox.files, "isolated": sandbox.isolated}
         server = ForkServer.serving(sandbox.package)
         try:
@@ -181,7 +367,7 @@ class NotebookProcess:
             raise OSError(message[1:].decode(errors="replace") or "its fork server ended")
         self.pid, self.handle = int(message[1:]), handles[0] if handles else None
         if self.namespaces:
-            self.watch = Watch(self.namespaces.pid, self.pid, self.limits)
+            self.watch = Watch(self.namespaces.pid, self.limits)
         elif self.account:
             self.watch = UserWatch(self.account.number, self.pid, self.limits)
 
@@ -189,7 +375,8 @@ class NotebookProcess:
         return self
 
     def __exit__(self, *_):
-        self.channel.connection.close()
+        for one in (*self.snapshots, self):
+            one.close()
         if self.namespaces:
             self.namespaces.close()
         elif self.account:
@@ -199,15 +386,8 @@ class NotebookProcess:
                 os.killpg(self.pid, signal.SIGKILL)
             except (ProcessLookupError, PermissionError):
                 pass  # it has ended by itself
-        if self.handle is not None:
-            os.close(self.handle)
         if self.folder:
             self.folder.cleanup()
-
-    @property
-    def exhausted(self):
-        """Whether the notebook's time is over."""
-        return time.monotonic() >= self.deadline
 
     def prepare(self, source):
         """Run lines of the grader's own before the first cell; raises Ended as `run_cell`."""
@@ -217,82 +397,34 @@ class NotebookProcess:
         """Run a cell; raises Ended when its process had to be stopped or died."""
         reply = self._request("run_cell", [source], self.limits.cell)
         try:
-            outputs = [dict(output) for output in reply["outputs"]]
+            outputs = [dict(output) for output in reply["outputs"][: self.outputs_left]]
+            self.outputs_left -= len(outputs)
             count = reply["execution_count"]
             return CellRun(
                 outputs, count if type(count) is int else None, reply["ended"] is True, reply.get("failed") is True
             )
         except (KeyError, TypeError, ValueError) as error:
-            raise self._ended("killed", "its process gave an answer that the grader's own code never gives") from error
+            raise self._ended("killed", FORGED) from error
 
-    def call(self, name, args, kwargs):
-        """Call the notebook's function `name` with plain arguments: a Reply; "timeout" or "killed" are outcomes."""
+    def calls(self, name, cases):
+        self.allowance = self.time.calls
         try:
-            reply = self._request("call", [name, args, kwargs], self.limits.call)
-        except Ended as ended:
-            return Reply(ended.status, error=ended.reason)
-        outcome, error, printed = reply.get("outcome"), reply.get("error", ""), reply.get("printed", "")
-        try:
-            codec.decode(reply.get("value"))
-            known = outcome in ("returned", "raised", "not done", "undefined", "timeout")
-            if not known or not isinstance(error, str) or not isinstance(printed, str):
-                raise codec.NotPlain("an unknown outcome")
-        except codec.NotPlain:
-            forged = self._ended("killed", "its process gave an answer that the grader's own code never gives")
-            return Reply(forged.status, error=forged.reason)
-        return Reply(outcome, reply.get("value"), reply.get("arguments"), printable(error[:300]), printed[:300])
+            yield from super().calls(name, cases)
+        finally:
+            self.allowance = self.time.cells
 
-    def _request(self, action, arguments, seconds):
-        nonce = secrets.token_hex(16)
-        if self.gone or self.exhausted:
-            raise self._ended("timeout", "the notebook's time was over")
-        if time.monotonic() - self.glanced > GLANCE and (excess := self._excess()):
-            raise self._ended("killed", f"it used {excess}")
-        try:
-            self.channel.send({"nonce": nonce, "action": action, "arguments": arguments})
+    def snapshot(self):
+        """A Snapshot of the process as it is now; raises Ended as `run_cell`."""
+        connection, inside = socket.socketpair()
+        with inside:
+            if LINUX:
+                connection.setsockopt(socket.SOL_SOCKET, socket.SO_PASSCRED, 1)
+            nonce = self._ask("snapshot", [])
+            taken = Snapshot(connection, self, nonce)
+            self.snapshots.append(taken)
             try:
-                return self._answer(nonce, seconds)
-            except Late:
-                self._interrupt()
-                return self._answer(nonce, self.limits.grace, time.monotonic() + self.limits.grace)
-        except Late as error:
-            raise self._ended("timeout", "it took too long, and did not heed the interrupt") from error
-        except Closed as error:
-            raise self._ended("killed", "its process ended all of a sudden") from error
-        except (Garbled, OSError) as error:
-            raise self._ended("killed", "its process sent what the grader's own code never sends") from error
-
-    def _answer(self, nonce, seconds, latest=None):
-        """The answer to a request; raises Late after `seconds` in which the notebook's process could run."""
-        latest = latest or self.deadline
-        start, waited = time.monotonic(), None
-        until = min(start + seconds, latest)
-        while True:
-            try:
-                return self.channel.answer_to(nonce, min(time.monotonic() + GLANCE, until))
-            except Late:
-                if excess := self._excess():
-                    raise self._ended("killed", f"it used {excess}")
-                if waited is None:
-                    waited = self.watch.waited() if self.watch else 0.0
-                elif self.watch:  # others kept the processor busy: that time is given back
-                    until = min(start + seconds + self.watch.waited() - waited, latest)
-                if time.monotonic() >= until:
-                    raise
-
-    def _excess(self):
-        self.glanced = time.monotonic()
-        return self.watch.excess() if self.watch else None
-
-    def _interrupt(self):
-        try:
-            if self.handle is not None:
-                signal.pidfd_send_signal(self.handle, signal.SIGINT)
-            else:
-                os.kill(self.pid, signal.SIGINT)
-        except ProcessLookupError:
-            pass  # it has just ended; the channel tells
-
-    def _ended(self, status, reason):
-        self.gone = True
-        return Ended(status, reason)
+                socket.send_fds(self.channel.connection, [b"S"], [inside.fileno()])
+            except OSError as error:
+                raise self._ended("killed", ALL_OF_A_SUDDEN) from error
+        self._answer(nonce, self.limits.call)
+        return taken

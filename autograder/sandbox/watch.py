@@ -15,14 +15,19 @@ PUBLIC = (
 TICK = 1 / os.sysconf("SC_CLK_TCK")  # seconds; the unit of processor time in /proc
 
 
+def waited(process):
+    """Seconds in which the process of that number could have run, but others had the processor."""
+    try:
+        return int(Path(f"/proc/{process}/schedstat").read_text().split()[1]) * 1e-9
+    except (OSError, ValueError, IndexError):
+        return 0.0  # it has ended, or this kernel does not count
+
+
 class Watch:
-    """Of one sandbox: all its processes together, and its files.
+    """Of one sandbox: all its processes together, and its files; first: the number of its first process"""
 
-    first: the number of the sandbox's first process; notebook: that of the notebook's own process
-    """
-
-    def __init__(self, first, notebook, limits):
-        self.root, self.notebook, self.limits = Path(f"/proc/{first}/root"), Path(f"/proc/{notebook}"), limits
+    def __init__(self, first, limits):
+        self.root, self.limits = Path(f"/proc/{first}/root"), limits
 
     def excess(self):
         """Which limit of the whole sandbox is passed, in words, or None."""
@@ -37,13 +42,6 @@ class Watch:
         if self._files() > self.limits.files:
             return f"more than {self.limits.files} files"
         return None
-
-    def waited(self):
-        """Seconds in which the notebook's process could have run, but others had the processor."""
-        try:
-            return int((self.notebook / "schedstat").read_text().split()[1]) * 1e-9
-        except (OSError, ValueError, IndexError):
-            return 0.0  # it has ended, or this kernel does not count
 
     def _processes(self):
         try:
@@ -66,7 +64,7 @@ class UserWatch(Watch):
     """
 
     def __init__(self, number, notebook, limits):
-        super().__init__(notebook, notebook, limits)
+        super().__init__(notebook, limits)
         self.number, self.size = number, 0
 
     def excess(self):

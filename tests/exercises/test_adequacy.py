@@ -6,6 +6,7 @@ For every exercise, for its public cases and for the hidden cases of 200 seeds (
 - every syntactic mutant of the reference, and of the solution in the notebook, is caught, unless the specification
   declares it as equivalent
 - every right solution of `solutions/` is accepted, and every wrong one refused
+- nothing that answers by a call's number, by the public key, or by what it was asked before is accepted
 
 `python3 -m autograder prove` says the same of fewer seeds, and which case would catch what slips through.
 """
@@ -51,6 +52,6 @@ def test_it_is_the_judge_who_says_so(name, thorough):
     public = key(exercise, PUBLIC_SEED)
     with quiet():
         verdicts = [
-            examine(name, public, lambda args, kwargs, f=each.function: call(f, args, kwargs)).right for each in tried
+            examine(name, public, lambda args, kwargs, f=each.fresh(): call(f, args, kwargs)).right for each in tried
         ]
     assert verdicts == [not what.refused for what in measure(exercise, tried, [PUBLIC_SEED])]

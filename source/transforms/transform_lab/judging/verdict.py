@@ -4,6 +4,7 @@ The same code serves the notebook (`check`, on the public cases of key.json) and
 called in another process), so a student and an instructor never see two opinions.
 """
 
+import json
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -27,6 +28,11 @@ class Reply:
     arguments: Plain = None  # the positional and keyword arguments after the call, as plain data: [list, dict]
     error: str = ""  # the student's own error, or why the call had to be stopped; in one line
     printed: str = ""  # the beginning of what it printed
+
+    @property
+    def finished(self) -> bool:
+        """Whether the call came to its end, with an answer or an error."""
+        return self.outcome in ("returned", "raised")
 
 
 @dataclass
@@ -78,20 +84,29 @@ class Verdict:
         return self.credit == 1.0
 
 
-def examine(name: str, exercise: PlainExercise, call: Callable[[list, dict], Reply]) -> Verdict:
-    """The Verdict on the function that `call(args, kwargs) -> Reply` calls, over all cases of `exercise`."""
-    cases, returns = exercise["cases"], exercise["returns"]
-    replies = []
-    for case in cases:
+def examine(
+    name: str, exercise: PlainExercise, call: Callable[[list, dict], Reply], tell: Callable[[str], str] = str
+) -> Verdict:
+    """The Verdict on the function that `call(args, kwargs) -> Reply` calls, over all cases of `exercise`.
+
+    It depends on the answers alone, not on the order of the cases.
+
+    tell: from what is wrong with a reply, in words that the student's process may have chosen, to what may be said of it
+    """
+    returns, answered = exercise["returns"], []
+    for case in exercise["cases"]:
         reply = call(case["args"], case["kwargs"])
-        replies.append(reply)
-        if reply.outcome not in ("returned", "raised"):
+        if not reply.finished:
             return _unfinished(name, reply, case)
-    outcomes = [compare(returns, case, reply) for case, reply in zip(cases, replies)]
+        answered.append((case, reply, compare(returns, case, reply)))
+    if not all(outcome.right for _, _, outcome in answered):
+        families = list(exercise["weights"])
+        answered.sort(key=lambda one: (families.index(one[0]["family"]), _simple_first(one[0])))
+    cases, replies, outcomes = map(list, zip(*answered))
     verdict = Verdict(
         name,
         "error" if all(reply.outcome == "raised" for reply in replies) else "graded",
-        credit=_credit(exercise, outcomes),
+        credit=_credit(exercise, cases, outcomes),
         parts={part: sum(part in outcome.parts for outcome in outcomes) for part in KINDS[returns].parts},
         cases=len(cases),
         returns=returns,
@@ -102,13 +117,19 @@ def examine(name: str, exercise: PlainExercise, call: Callable[[list, dict], Rep
         return verdict
     if constant(replies):
         verdict.credit = 0.0
-    verdict.misconceptions, verdict.says, verdict.hint = diagnose(exercise, replies, outcomes)
-    for case, reply, outcome in zip(cases, replies, outcomes):
+    verdict.misconceptions, verdict.says, verdict.hint = diagnose({**exercise, "cases": cases}, replies, outcomes, tell)
+    for case, reply, outcome in answered:
         if not outcome.answered:  # there is none when calls only changed their arguments
             verdict.failing, verdict.error = case, reply.error
             verdict.answer = codec.decode(reply.value) if reply.outcome == "returned" else None
             break
     return verdict
+
+
+def _simple_first(case: PlainCase) -> tuple[int, str]:
+    """Sorts cases of a family: what takes fewer characters to write is the better example."""
+    text = json.dumps([case["args"], case["kwargs"]])
+    return len(text), text
 
 
 def _unfinished(name: str, reply: Reply, case: PlainCase) -> Verdict:
@@ -140,12 +161,12 @@ def compare(returns: str, case: PlainCase, reply: Reply) -> Outcome:
     return Outcome(good, len(good) == len(parts), got, mutated=mutated)
 
 
-def _credit(exercise: PlainExercise, outcomes: list[Outcome]) -> float:
+def _credit(exercise: PlainExercise, cases: list[PlainCase], outcomes: list[Outcome]) -> float:
     """Each family of cases counts by its weight; within it, a part earns its share when it is right in every case."""
     if all(outcome.right for outcome in outcomes):
         return 1.0
     families: dict[str, list[Outcome]] = {}
-    for case, outcome in zip(exercise["cases"], outcomes):
+    for case, outcome in zip(cases, outcomes):
         families.setdefault(case["family"], []).append(outcome)
     earned = 0.0
     for family, members in families.items():
