@@ -49,8 +49,7 @@ def printable(text: str) -> str:
 def calm(text: str) -> str:
     """Text in which no link runs a script, and no formula links, loads or styles; what is taken out is left as words.
 
-    Our own pages have no use for it: their links are chosen, and their formulas are MathML. It is for whoever opens a
-    graded notebook in other software.
+    Our own pages choose their links and have formulas as MathML; this is for whoever opens a graded notebook elsewhere, too.
     """
     return ACTIVE.sub(lambda found: found["latex"] or "javascript ", text)
 

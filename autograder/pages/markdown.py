@@ -21,12 +21,16 @@ from nbconvert.filters.markdown_mistune import (
 )
 from pygments.token import STANDARD_TYPES
 
-from ..untrusted import clean
+from ..untrusted import calm, clean
 
 PICTURES = ("data:image/png;base64,", "data:image/jpeg;base64,", "data:image/gif;base64,")  # attached to a cell
 LONGEST = 20_000  # characters of a cell, pictures not counted; the longest that we give out has below 2,000
 EMBEDDED = re.compile(r"data:image/\w+;base64,[\w+/=]+")
 SPACES = " " * 500  # a row of them takes the parser the square of its length
+EXPANDS, MARGIN = (
+    30,
+    2_000,
+)  # times as long, and characters more, a page may be; what is defined once may be used in every line
 LONGEST_FORMULA = 2_000  # characters
 DEEPEST_FORMULA = 30  # parts of it inside each other
 PART = re.compile(r"\\[{}]|(\{|\\begin\b|\\left\b)|(\}|\\end\b|\\right\b)")
@@ -75,21 +79,27 @@ def markdown2html(context, source):
     What would take a converter out of proportion to its length is shown as it was written.
     """
     if len(EMBEDDED.sub("", source)) <= LONGEST and SPACES not in source:
-        renderer = Renderer(escape=False, attachments=context.get("cell", {}).get("attachments", {}))
+        renderer = Renderer(context.get("cell", {}).get("attachments", {}))
         parsers = {"block": BlockParser(), "inline": InlineParser(hard_wrap=False)}
         try:
-            made = MarkdownWithMath(renderer, **parsers).render(source)
+            made = MarkdownWithMath(renderer, **parsers).render(calm(source))
         except Exception:  # the parser raises what it happens to meet, such as a reference of thousands of digits
             made = None
-        if made is not None and (cleaned := clean(made, attribute_filter=_attribute, **RULES)) is not None:
-            return cleaned
+        if made is not None and len(made) <= EXPANDS * len(source) + MARGIN + renderer.embedded:
+            if (cleaned := clean(made, attribute_filter=_attribute, **RULES)) is not None:
+                return cleaned
     return f"<pre>{html.escape(source)}</pre>"
 
 
+def as_it_is(text):
+    """In place of nbconvert's strip_files_prefix, which takes the square of a line's length: `_address` leaves no such link."""
+    return text
+
+
 def _bounded(patterns):
-    """Patterns of formulas which look for the end of one no further than the longest that is converted."""
+    """Patterns of formulas which look for the end of one no further than that, and not through all the rest from each of them."""
     return {
-        name: re.sub(r"\.([*+])\?", lambda found: f".{{{'*+'.index(found[1])},{LONGEST_FORMULA}}}?", pattern)
+        name: re.sub(r"\.([*+])\?", lambda found: f".{{{'*+'.index(found[1])},{2 * LONGEST_FORMULA}}}?", pattern)
         for name, pattern in patterns.items()
         if "math" in name or name == "latex_environment"
     }
@@ -104,7 +114,14 @@ class InlineParser(MathInlineParser):
 
 
 class Renderer(IPythonRenderer):
-    """Formulas become MathML, which browsers typeset by themselves: no script, and no address to load one from."""
+    """Formulas become MathML, which browsers typeset by themselves: no script, and no address to load one from.
+
+    attachments: {name: {type: data}} of the cell; embedded: characters of those that were shown
+    """
+
+    def __init__(self, attachments):
+        super().__init__(escape=False, attachments=dict(attachments))
+        self.embedded = 0
 
     def inline_math(self, body):
         return _mathml(body, "inline")
@@ -117,10 +134,14 @@ class Renderer(IPythonRenderer):
         return super().block_code(code, info if language and language[0] in COLOURED and is_short(code) else None)
 
     def image(self, text, url, title=None):
+        """A picture that is attached to the cell, once: a large one could be asked for in every line."""
         try:
-            return super().image(text, url, title)
+            made = super().image(text, url, title)
         except InvalidNotebook:  # it is attached no more
             return html.escape(text)
+        if self.attachments.pop(url.removeprefix("attachment:"), None):
+            self.embedded += len(made)
+        return made
 
     def latex_environment(self, name, body):
         return _mathml(f"\\begin{{{name}}}{body}\\end{{{name}}}", "block")
