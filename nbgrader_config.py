@@ -36,7 +36,13 @@ c.Autograde.autograde_preprocessors = [
     "nbgrader.preprocessors.CheckCellMetadata",
 ]
 # What students write is shown in feedback and formgrader without scripts and without anything from elsewhere.
-c.HTMLExporter.filters = {"markdown2html": "autograder.pages.markdown.markdown2html"}
+# It cannot look like, cover or move what the grader says, and takes no longer than its size allows.
+c.HTMLExporter.filters = {
+    "markdown2html": "autograder.pages.markdown.markdown2html",
+    "strip_files_prefix": "autograder.pages.markdown.as_it_is",
+}
+c.HTMLExporter.preprocessors = ["autograder.pages.bounded.Bounded"]
+c.HTMLExporter.template_file = f"{ROOT}/autograder/pages/templates/formgrade.html.j2"
 # Students write into the exchange: what they put there neither fetches files of the instructor's nor stops the others.
 c.ExchangeFactory.collect = "autograder.intake.exchange.Collect"
 c.ExchangeFactory.release_feedback = "autograder.intake.exchange.ReleaseFeedback"

@@ -407,7 +407,7 @@ def _write_feedback(here, grades, jobs):
         for student, problem in feedback.generate(here, wanted, jobs):
             progress.advance(bar)
             if problem:
-                progress.console.print(f"{student}: no feedback: {problem}", markup=False)
+                progress.console.print(f"{student}: {problem}", markup=False)
 
 
 def _busy():

@@ -4,10 +4,14 @@ import atexit
 import csv
 import os
 import shutil
+import socket
 import subprocess
 import sys
 import tempfile
 import time
+import urllib.error
+import urllib.request
+from contextlib import contextmanager
 from functools import cache
 from html.parser import HTMLParser
 from pathlib import Path
@@ -106,6 +110,47 @@ def wait_for(condition):
             return
         time.sleep(0.05)
     raise TimeoutError("what a test waits for did not happen")
+
+
+@contextmanager
+def jupyter_server(course):
+    """The address of a real Jupyter server in a course, with nbgrader's formgrader; its token is "secret"."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    command = [
+        sys.executable,
+        "-m",
+        "jupyter_server",
+        "--no-browser",
+        f"--port={port}",
+        "--port-retries=0",
+        "--allow-root",
+    ]
+    command += ["--IdentityProvider.token=secret", "--ServerApp.disable_check_xsrf=True"]
+    with open(course.root / "server.log", "w") as log:
+        server = subprocess.Popen(command, cwd=course.root, stdout=log, stderr=log, stdin=subprocess.DEVNULL)
+    address = f"http://127.0.0.1:{port}"
+
+    def answers():
+        try:
+            return asked(address, "/api/status")
+        except (urllib.error.URLError, ConnectionError):
+            return False
+
+    try:
+        wait_for(answers)
+        yield address
+    finally:
+        server.terminate()
+        server.wait(30)
+
+
+def asked(address, path, method="GET"):
+    """What a `jupyter_server` answers."""
+    request = urllib.request.Request(address + path, method=method, headers={"Authorization": "token secret"})
+    with urllib.request.urlopen(request, timeout=PATIENCE) as response:
+        return response.read().decode()
 
 
 def verdicts(course):

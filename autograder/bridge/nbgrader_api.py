@@ -23,9 +23,14 @@ def db_url(course):
     return CourseDirectory(config=settings(course)).db_url
 
 
-def call(course, command, *arguments):
-    """Run a method of nbgrader's API, such as "generate_feedback"; raises CourseError with the reason when it fails."""
+def call(course, command, *arguments, changed=None):
+    """Run a method of nbgrader's API, such as "generate_feedback"; raises CourseError with the reason when it fails.
+
+    changed: traitlets' Config of settings that are others than the course's this time
+    Returns what nbgrader told of as an error and went on, in words.
+    """
     config = settings(course)
+    config.merge(changed or {})
     api = NbGraderAPI(CourseDirectory(config=config), config=config)
     reasons = _Reasons(logging.ERROR)
     logger.addHandler(reasons)
@@ -36,6 +41,7 @@ def call(course, command, *arguments):
     if not result["success"]:
         lines = (result.get("error") or result.get("log") or "").strip().splitlines()
         raise CourseError("; ".join(reasons.found) or (lines[-1] if lines else "no reason given"))
+    return "; ".join(reasons.found)
 
 
 class _Reasons(logging.Handler):

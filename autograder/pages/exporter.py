@@ -4,7 +4,6 @@ nbgrader_config.py names the exporter here, and the step before it.
 """
 
 import copy
-import html
 import re
 from pathlib import Path
 
@@ -13,20 +12,19 @@ from nbconvert.exporters import HTMLExporter, TemplateExporter
 from nbconvert.filters import Highlight2HTML
 from nbconvert.filters.widgetsdatatypefilter import WidgetsDataTypeFilter
 from nbgrader.preprocessors import GetGrades
-from nbgrader.utils import is_grade
+from traitlets import Bool
 
 from ..grading.judge import opinion
 from ..grading.records import RECORD, verdicts
 from . import examples
+from .bounded import LEFT_OUT as LEFT_OUT
+from .bounded import bared, is_test, shortened
 from .rendering import points
 
 TEMPLATE = Path(__file__).parent / "templates" / "feedback.html.j2"
 LARGEST_PAGE = 280_000  # bytes; five of them and the summary stay below 1.5 MB
 SHOWN = (150_000, 50_000, 10_000, 0)  # bytes of a student's own cells to try, until the page is small enough
-TAKES = {"code": 5, "markdown": 2}  # bytes of the page for each byte of a cell's source: colours, formulas
-LEFT_OUT = "[not shown here, or this page would be too large; it is in the notebook that you handed in]"
 NAMELESS, NO_NAME = re.compile(r"<img (?![^>]*\balt=)"), "No description has been provided for this image"
-NOTE = nbformat.v4.new_output("stream", text=LEFT_OUT)
 
 
 class FetchGrades(GetGrades):
@@ -40,7 +38,12 @@ class FetchGrades(GetGrades):
 
 
 class Feedback(HTMLExporter):
-    """Makes a feedback page for `nbgrader generate_feedback`, and so for ours."""
+    """Makes a feedback page for `nbgrader generate_feedback`, and so for ours.
+
+    There is a page whatever the student's notebook holds: where one cannot be made of it, the verdicts alone.
+    """
+
+    bare = Bool(False, help="Show the verdicts, and nothing that the student wrote or displayed.").tag(config=True)
 
     def __init__(self, **kwargs):
         super().__init__(**kwargs)
@@ -51,13 +54,25 @@ class Feedback(HTMLExporter):
     def from_notebook_node(self, nb, resources=None, **kwargs):
         nb = copy.deepcopy(nb)
         self._word_anew(nb)
+        if not self.bare:
+            try:
+                return self._whole(nb, resources, **kwargs)
+            except Exception as error:  # whatever is in the notebook
+                reason = f"{type(error).__name__}: {error}"[:200]
+            self.log.error(
+                "%s: no page could be made of the notebook, so it holds the verdicts alone (%s)",
+                *((resources or {}).get("nbgrader", {}).get("notebook", "a notebook"), reason),
+            )
+        return self._page(shortened(bared(nb), SHOWN[0]), resources, **kwargs)
+
+    def _whole(self, nb, resources, **kwargs):
+        """The page with as much of the student's own cells as keeps it small."""
         self._add_examples(nb)
         for budget in SHOWN:
             page, made = self._page(shortened(nb, budget), copy.deepcopy(resources), **kwargs)
             if len(page.encode()) <= LARGEST_PAGE:
-                return page, made
-        nb.cells = [cell for cell in nb.cells if "nbgrader" in cell.metadata]  # thousands of cells of their own
-        return self._page(shortened(nb, 0), resources, **kwargs)
+                break
+        return page, made
 
     def _page(self, nb, resources, **kwargs):
         """As HTMLExporter makes it, but for its last step, which takes half the time: it parses the whole page once more to
@@ -76,7 +91,7 @@ class Feedback(HTMLExporter):
         found = verdicts(nb.metadata.get(RECORD, {}))
         for cell in nb.cells:
             name = cell.metadata.get("nbgrader", {}).get("grade_id")
-            if name in found and is_grade(cell) and cell.get("outputs"):
+            if name in found and is_test(cell) and cell.outputs:
                 cell.outputs[0] = nbformat.from_dict(opinion(found[name]))
 
     def _add_examples(self, nb):
@@ -84,43 +99,12 @@ class Feedback(HTMLExporter):
         found = nb.metadata.get(RECORD, {}).get("examples", {})
         for cell in nb.cells:
             name = cell.metadata.get("nbgrader", {}).get("grade_id")
-            if name not in found or not is_grade(cell) or cell.cell_type != "code":
+            if name not in found or not is_test(cell) or not cell.outputs:
                 continue
             try:
                 shown = {"text/html": examples.of_answer(name, found[name])}
-            except (AttributeError, LookupError, TypeError, ValueError) as error:
+            except Exception as error:  # a damaged record, or an answer that cannot be drawn
                 self.log.warning("%s: its record is damaged, so no example is shown (%r)", name, error)
                 continue
             position = len(cell.outputs) - 1  # the last one says the points
             cell.outputs.insert(position, {"output_type": "display_data", "data": shown, "metadata": {}})
-
-
-def shortened(nb, budget):
-    """A copy of the notebook in which what a student wrote and displayed takes about `budget` bytes of the page.
-
-    From the top, all that still fits is kept. The verdicts are not touched.
-    """
-    nb, left = copy.deepcopy(nb), budget
-
-    def fits(text, weight=1):
-        nonlocal left
-        size = weight * len(html.escape(text).encode())
-        if size > left:
-            return False
-        left -= size
-        return True
-
-    for cell in nb.cells:
-        if not fits(cell.source, TAKES[cell.cell_type]):
-            cell.source = LEFT_OUT
-        attachments = cell.get("attachments", {})
-        cell.attachments = {name: data for name, data in attachments.items() if fits("".join(map(str, data.values())))}
-        if cell.cell_type == "code" and not is_grade(cell):
-            cell.outputs = [output if fits(_text(output)) else NOTE for output in cell.outputs]
-    return nb
-
-
-def _text(output):
-    """All that an output shows, as one text."""
-    parts = [output.get("text", ""), *output.get("traceback", ()), *output.get("data", {}).values()]
-    return "".join(map(str, parts))

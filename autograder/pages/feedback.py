@@ -10,6 +10,7 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict
 from urllib.parse import quote
 
+from traitlets.config import Config
 from transform_lab.judging import panel
 from transform_lab.judging.status import STATUSES
 
@@ -26,6 +27,7 @@ from .markdown import heading
 from .rendering import environment
 
 SUMMARY = "index.html"
+WITHOUT = "feedback without what the student wrote and displayed"
 
 
 def is_complete(course, student, grades):
@@ -72,17 +74,52 @@ def generate(course, grades, jobs):
         yield from zip(grades, pool.map(_one, [course] * len(grades), grades, grades.values()))
 
 
-def _one(course, student, grades):
+def _one(course, student, grades, bare=False):
+    """Write a student's pages whatever is in the notebooks; None, or what they lack and why.
+
+    bare: leave out from the start what the student wrote and displayed, because a page with it took too much
+    """
+    told = f"{WITHOUT}: with it they took more time or memory than is allowed" if bare else None
+    for write in (_verdicts,) if bare else (_whole, _verdicts):
+        try:
+            return write(course, student, grades) or told
+        except Exception as error:  # whatever it is, the others' pages and the class report are not to be lost
+            told = told or f"{WITHOUT}: {_words(error)}"
+            last = error
     try:
-        if any(course.autograded(student).glob("*.ipynb")):
-            nbgrader_api.call(course, "generate_feedback", ASSIGNMENT, student)
-        course.feedback(student).mkdir(parents=True, exist_ok=True)
-        replace(course.feedback(student) / SUMMARY, summary(course, student, grades))
-    except CourseError as error:
-        return str(error)
-    except Exception as error:  # whatever it is, the others' pages and the class report are not to be lost
-        return f"{type(error).__name__}: {error}"
-    return None
+        _least(course, student, grades)
+        return f"the pages hold the points alone: {_words(last)}"
+    except Exception as error:
+        return f"no feedback: {_words(error)}"
+
+
+def _words(error):
+    kind = "" if isinstance(error, CourseError) else f"{type(error).__name__}: "
+    return kind + " ".join(str(error).split())[:300]
+
+
+def _whole(course, student, grades, changed=None):
+    problem = None
+    if any(course.autograded(student).glob("*.ipynb")):
+        problem = nbgrader_api.call(course, "generate_feedback", ASSIGNMENT, student, changed=changed)
+    course.feedback(student).mkdir(parents=True, exist_ok=True)
+    replace(course.feedback(student) / SUMMARY, summary(course, student, grades))
+    return problem
+
+
+def _verdicts(course, student, grades):
+    """Pages without what the student wrote and displayed."""
+    return _whole(course, student, grades, Config(Feedback={"bare": True}))
+
+
+def _least(course, student, grades):
+    """Pages with the points of the gradebook, which need nothing else; they are made anew by the next run."""
+    course.feedback(student).mkdir(parents=True, exist_ok=True)
+    template = environment().get_template("least.html")
+    for path in course.autograded(student).glob("*.ipynb"):
+        page = template.render(assignment=ASSIGNMENT, notebooks={path.stem: grades.get(path.stem, NotebookGrades())})
+        replace(course.feedback(student) / f"{path.stem}.html", page)
+    replace(course.feedback(student) / SUMMARY, template.render(assignment=ASSIGNMENT, notebooks=grades))
 
 
 def _problems(course, student, records):

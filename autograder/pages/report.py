@@ -16,8 +16,11 @@ from markupsafe import Markup
 from ..course import ASSIGNMENT
 from ..files import replace
 from ..grading.judge import Row
+from ..grading.records import missing
+from ..untrusted import printable
 from . import examples
 from . import report_data as findings
+from .bounded import TURNING
 from .rendering import environment
 
 COLUMNS = ("student", *(field.name for field in fields(Row)))
@@ -32,7 +35,7 @@ def write(course, writer):
     Shown are the students whose work is there and in the gradebook, which the gradebook.Writer knows.
     """
     handed_in, known = course.students(), writer.students()
-    works = {student: findings.work(course, student) for student in handed_in if student in known}
+    works = {student: _work(course, student) for student in handed_in if student in known}
     runs = findings.runs(works)
     course.reports.mkdir(parents=True, exist_ok=True)
     _write_verdicts(course, works, runs[0].graded.timestamp() if runs else None)
@@ -65,8 +68,20 @@ def write(course, writer):
         changes=findings.changes(before, works) if before else None,
         by_hand={student: _by_hand(course, grades[student]) for student in works},
     )
-    replace(course.reports / "index.html", page)
+    replace(course.reports / "index.html", TURNING.sub("", printable(page)))
     return {student: work.rows for student, work in works.items()}
+
+
+def _work(course, student):
+    """The Work of a student; of one whose record somebody has damaged, that it is so: the others' report is not to be lost."""
+    try:
+        work = findings.work(course, student)
+        float(work.points), float(work.most)
+        return work
+    except Exception as error:
+        rows = [row for released in course.notebooks.values() for row in missing(released)]
+        damaged = f"What is recorded of the grading cannot be read ({type(error).__name__}); grade again with --force."
+        return findings.Work(rows=rows, problems=[damaged])
 
 
 # --- the tables -----------------------------------------------------------------------------------------------------

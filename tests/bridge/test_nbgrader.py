@@ -2,14 +2,11 @@
 
 import json
 import shutil
-import socket
 import subprocess
 import sys
-import urllib.error
-import urllib.request
 
 import pytest
-from support import NAMES, marks, points, points_by_hand, wait_for, without_plugin
+from support import NAMES, asked, jupyter_server, marks, points, points_by_hand, without_plugin
 
 from autograder.course import ASSIGNMENT, Course
 from autograder.demo import enroll
@@ -95,50 +92,17 @@ def test_a_wrong_answer_fails_validation_with_one_line(course, nbgrader):
 def formgrader(course, hand_in, solved, sandboxed):
     """The address of a real Jupyter server in a course with one submission."""
     hand_in(course, "alice", solved)
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
-    command = [
-        sys.executable,
-        "-m",
-        "jupyter_server",
-        "--no-browser",
-        f"--port={port}",
-        "--port-retries=0",
-        "--allow-root",
-    ]
-    command += ["--IdentityProvider.token=secret", "--ServerApp.disable_check_xsrf=True"]
-    with open(course.root / "server.log", "w") as log:
-        server = subprocess.Popen(command, cwd=course.root, stdout=log, stderr=log, stdin=subprocess.DEVNULL)
-    address = f"http://127.0.0.1:{port}"
-    try:
-        wait_for(lambda: answers(address))
+    with jupyter_server(course) as address:
         yield address
-    finally:
-        server.terminate()
-        server.wait(30)
-
-
-def answers(address):
-    try:
-        return page(address, "/api/status")
-    except (urllib.error.URLError, ConnectionError):
-        return False
-
-
-def page(address, path, method="GET"):
-    request = urllib.request.Request(address + path, method=method, headers={"Authorization": "token secret"})
-    with urllib.request.urlopen(request, timeout=300) as response:
-        return response.read().decode()
 
 
 def test_the_formgraders_pages_answer_and_its_button_grades(course, formgrader):
-    assert "nbgrader formgrade" in page(formgrader, "/formgrader")
-    (assignment,) = json.loads(page(formgrader, "/formgrader/api/assignments"))
+    assert "nbgrader formgrade" in asked(formgrader, "/formgrader")
+    (assignment,) = json.loads(asked(formgrader, "/formgrader/api/assignments"))
     assert assignment["name"] == ASSIGNMENT and assignment["max_score"] == points() + points_by_hand()
-    result = json.loads(page(formgrader, f"/formgrader/api/submission/{ASSIGNMENT}/alice/autograde", "POST"))
+    result = json.loads(asked(formgrader, f"/formgrader/api/submission/{ASSIGNMENT}/alice/autograde", "POST"))
     assert result["success"], result
-    (submission,) = json.loads(page(formgrader, f"/formgrader/api/submissions/{ASSIGNMENT}"))
+    (submission,) = json.loads(asked(formgrader, f"/formgrader/api/submissions/{ASSIGNMENT}"))
     assert submission["autograded"] and submission["code_score"] == points()
     for path in (
         "manage_submissions/transforms",
@@ -146,9 +110,9 @@ def test_the_formgraders_pages_answer_and_its_button_grades(course, formgrader):
         "gradebook/transforms",
         "gradebook/transforms/2_homogeneous_transforms",
     ):
-        assert "nbgrader formgrade" in page(formgrader, f"/formgrader/{path}"), path
+        assert "nbgrader formgrade" in asked(formgrader, f"/formgrader/{path}"), path
     (found,) = json.loads(
-        page(formgrader, f"/formgrader/api/submitted_notebooks/{ASSIGNMENT}/2_homogeneous_transforms")
+        asked(formgrader, f"/formgrader/api/submitted_notebooks/{ASSIGNMENT}/2_homogeneous_transforms")
     )
-    shown = page(formgrader, f"/formgrader/submissions/{found['id']}")
+    shown = asked(formgrader, f"/formgrader/submissions/{found['id']}")
     assert "transform_to_pose: all right." in shown and "4 of 4 points" in shown
