@@ -155,7 +155,7 @@ def sandboxed():
 def open_python():
     """A Python with our packages that every user may read, as one in a container is; tests that need it need root.
 
-    Where ours lies in a closed folder, that is an environment of the system's Python which takes the packages from ours.
+    Where ours lies in a closed folder, that is an environment of the system's Python with the same packages.
     """
     if os.getuid() != 0:
         pytest.skip("needs root, as a grader in a container is")
@@ -177,13 +177,11 @@ def open_python():
         python, packages = Path(folder, "bin/python"), sysconfig.get_path("purelib")
         if system and subprocess.run([system, "-m", "venv", "--without-pip", folder]).returncode == 0:
             (own,) = Path(folder, "lib").glob("python3.*/site-packages")
-            for ours in (packages, f"{folder}/packages"):
-                if ours != packages:  # those, too, lie in a closed folder: the same files under another name, or copies
-                    subprocess.run(["sh", "-c", 'cp -rl "$0" "$1" || cp -rf "$0/." "$1"', packages, ours])
-                (own / "ours.pth").write_text(f"import site; site.addsitedir({ours!r})\n")
-                if serves(python):
-                    yield str(python)
-                    return
+            # In it, where sandboxes see them: the same files under another name, or copies of them.
+            subprocess.run(["sh", "-c", 'cp -rl "$0/." "$1" || cp -rf "$0/." "$1"', packages, own], check=True)
+            if serves(python):
+                yield str(python)
+                return
     lacking("needs a Python that other users may read")
 
 

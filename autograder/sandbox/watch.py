@@ -14,7 +14,7 @@ PUBLIC = (
     "/dev/shm",
     "/run/lock",
 )  # where any user may write; a notebook's own folder lies in the first
-TICK = 1 / os.sysconf("SC_CLK_TCK")  # seconds; the unit of processor time in /proc
+TICKS = os.sysconf("SC_CLK_TCK")  # in a second; the unit of processor time in /proc
 # Bytes of the kernel's, which no process is charged for, of a pipe or socket (as if it were full), terminal, and mapping.
 BUFFER, TERMINAL, MAPPING = 320_000, 1_300_000, 500
 SHARED_DEVICE = b" /dev/zero (deleted)\n"  # what is mapped of it may be a page of all that lies there
@@ -28,17 +28,18 @@ class Watch:
 
     def __init__(self, first, notebook, limits):
         self.root, self.notebook, self.limits = Path(f"/proc/{first}/root"), Path(f"/proc/{notebook}"), limits
-        self.used = {}  # {(number of a process, when it started): seconds of processor time of its own}
+        self.used = {}  # {(number of a process, when it started): ticks of processor time of its own}
+        self.ticks = 0  # of all that have been there
 
     def excess(self):
         """Which limit of the whole sandbox is passed, in words, or None."""
         found = self._processes()
         buffers = set().union(*map(_buffers, found))
         memory = sum(map(_memory, found)) + BUFFER * len(buffers) + TERMINAL * self._terminals()
-        processor = self._processor(found)
+        self._count(found)
         if memory > self.limits.memory:
             return f"more than {self.limits.memory / 1e9:g} GB of memory"
-        if processor > self.limits.cpu:
+        if self.ticks > TICKS * self.limits.cpu:
             return f"more than {self.limits.cpu:g} s of processor time"
         if self._files() > self.limits.files:
             return f"more than {self.limits.files} files"
@@ -51,19 +52,18 @@ class Watch:
         except (OSError, ValueError, IndexError):
             return 0.0  # it has ended, or this kernel does not count
 
-    def _processor(self, processes):
-        """Seconds of processor time, as far as it can be known of processes that ended between two looks: they are in what
-        their parent is charged for, or, where nobody waits for them, at least a tick each."""
-        now = 0.0
+    def _count(self, processes):
+        """Add up processor time. What ends between two looks is in what its parent has used, or, where nobody waits for
+        it, stands with what was seen of it, and a tick."""
+        now = 0
         for process in processes:
             try:
                 fields = (process / "stat").read_text().rpartition(")")[2].split()
             except OSError:
                 continue  # it has ended
-            own, children = sum(map(int, fields[11:13])) * TICK, sum(map(int, fields[13:15])) * TICK
-            self.used[process.name, fields[19]] = own
-            now += own + children
-        return max(now, sum(self.used.values()) + TICK * self._started())
+            self.used[process.name, fields[19]] = sum(map(int, fields[11:13]))
+            now += sum(map(int, fields[11:15]))  # with that of children which it has waited for
+        self.ticks = max(self.ticks, now, sum(self.used.values()) + self._started())
 
     def _started(self):
         """How many processes and threads there have been at least: they are numbered from 1 in a sandbox."""
