@@ -179,6 +179,9 @@ def open_python():
             (own,) = Path(folder, "lib").glob("python3.*/site-packages")
             # In it, where sandboxes see them: the same files under another name, or copies of them.
             subprocess.run(["sh", "-c", 'cp -rl "$0/." "$1" || cp -rf "$0/." "$1"', packages, own], check=True)
+            alembic = python.with_name("alembic")  # nbgrader runs it by name
+            alembic.write_text(f"#!{python}\nfrom alembic.config import main\nmain()\n")
+            alembic.chmod(0o755)
             if serves(python):
                 yield str(python)
                 return

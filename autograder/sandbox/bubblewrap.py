@@ -12,6 +12,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+from functools import cache
 from pathlib import Path
 
 from .. import ASSIGNMENT
@@ -28,13 +29,11 @@ class Namespaces:
     """
 
     def __init__(self, code):
-        from .seccomp import notebook_filter  # only here: a machine may lack the library, which is said in other words
-
         # The arguments go by a file: as a command line, anybody inside could read them.
         with tempfile.TemporaryFile() as arguments, tempfile.TemporaryFile() as rules:
             arguments.write(b"\0".join(os.fsencode(argument) for argument in command(code)))
             arguments.seek(0)
-            notebook_filter().export_bpf(rules)  # also for those that only hold the sandbox open: nobody needs more
+            rules.write(compiled_filter())  # also for those that only hold the sandbox open: nobody in it needs more
             rules.seek(0)
             information, theirs = os.pipe()
             given = {"--args": arguments.fileno(), "--seccomp": rules.fileno(), "--info-fd": theirs}
@@ -75,6 +74,17 @@ class Namespaces:
         else:
             self.process.kill()
         return self.process.communicate()[1]
+
+
+@cache
+def compiled_filter():
+    """The filter of system calls, as the kernel takes it: bytes."""
+    from .seccomp import notebook_filter  # only here: on a machine without its library, `probe` says so
+
+    with tempfile.TemporaryFile() as file:
+        notebook_filter().export_bpf(file)
+        file.seek(0)
+        return file.read()
 
 
 def command(code):

@@ -460,20 +460,16 @@ ESCAPES = [
         reached = []
         for process in os.listdir('/proc'):
             if process.isdigit() and int(process) != os.getpid():
-                for name in ('mem', 'maps', 'environ', 'auxv', 'syscall', 'personality'):
+                for name in ('mem', 'maps', 'environ', 'auxv', 'syscall', 'personality', 'stack', 'io'):
                     try:
-                        os.close(os.open(f'/proc/{process}/{name}', os.O_RDWR if name == 'mem' else os.O_RDONLY))
-                        reached.append((process, name))
+                        file = os.open(f'/proc/{process}/{name}', os.O_RDWR if name == 'mem' else os.O_RDONLY)
+                        reached.append((process, name, name == 'mem' or os.read(file, 100)))
                     except OSError:
                         continue
-                for name in ('fd', 'map_files'):
+                links = ['root', 'cwd', 'exe', 'ns/user', 'ns/mnt', *(f'fd/{number}' for number in range(64))]
+                for name in links:
                     try:
-                        reached.append((process, os.listdir(f'/proc/{process}/{name}')))
-                    except OSError:
-                        continue
-                for name in ('root', 'cwd', 'exe', 'ns/user'):
-                    try:
-                        reached.append((process, os.readlink(f'/proc/{process}/{name}')))
+                        reached.append((process, name, os.readlink(f'/proc/{process}/{name}')))
                     except OSError:
                         continue
         print('reached', reached)

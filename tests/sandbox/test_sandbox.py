@@ -235,6 +235,12 @@ def test_sockets_of_many_processes_are_limited(sandboxed):
     assert killed(Limits(cell=60, memory=700_000_000), cell) == "it used more than 0.7 GB of memory"
 
 
+def test_timers_are_limited(sandbox):
+    cell = "import ctypes; make, timer, made = ctypes.CDLL(None).timer_create, ctypes.c_void_p(), 0\n"
+    cell += "while made < 3_000 and make(1, None, ctypes.byref(timer)) == 0: made += 1\n"
+    assert value(sandbox, cell + "0 < made <= 1_000") == "True"
+
+
 def test_terminals_of_many_processes_are_limited(sandboxed):
     cell = FORKED.format(count=30, work="x = [os.openpty() for _ in range(24)]; time.sleep(60)", after="time.sleep(60)")
     assert killed(Limits(cell=60, memory=700_000_000), cell) == "it used more than 0.7 GB of memory"
