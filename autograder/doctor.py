@@ -31,6 +31,13 @@ def examine(course):
             f"{limits.files} files of up to {limits.file / 1e6:g} MB in folders of {FOLDER / 1e6:g} MB.",
         ),
     ]
+    lines.append(
+        (
+            True,
+            "Memory and processor time are counted by looking at all processes of a notebook, four times a second; no memory "
+            "cgroup is used. Pipes, sockets and terminals count as if they were full; memory without an owner is refused.",
+        )
+    )
     if not os.path.exists("/proc/self/schedstat"):
         lines.append((False, "This kernel does not tell who waits for a processor: a slow neighbour can cost time."))
     if exposed := sandbox.refusal(course.root):

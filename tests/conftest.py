@@ -155,7 +155,7 @@ def sandboxed():
 def open_python():
     """A Python with our packages that every user may read, as one in a container is; tests that need it need root.
 
-    Where ours lies in a closed folder, that is an environment of the system's Python which takes the packages from ours.
+    Where ours lies in a closed folder, that is an environment of the system's Python with the same packages.
     """
     if os.getuid() != 0:
         pytest.skip("needs root, as a grader in a container is")
@@ -177,11 +177,15 @@ def open_python():
         python, packages = Path(folder, "bin/python"), sysconfig.get_path("purelib")
         if system and subprocess.run([system, "-m", "venv", "--without-pip", folder]).returncode == 0:
             (own,) = Path(folder, "lib").glob("python3.*/site-packages")
-            (own / "ours.pth").write_text(f"import site; site.addsitedir({packages!r})\n")
+            # In it, where sandboxes see them: the same files under another name, or copies of them.
+            subprocess.run(["sh", "-c", 'cp -rl "$0/." "$1" || cp -rf "$0/." "$1"', packages, own], check=True)
+            alembic = python.with_name("alembic")  # nbgrader runs it by name
+            alembic.write_text(f"#!{python}\nfrom alembic.config import main\nmain()\n")
+            alembic.chmod(0o755)
             if serves(python):
                 yield str(python)
                 return
-    pytest.skip("needs a Python that other users may read")
+    lacking("needs a Python that other users may read")
 
 
 @pytest.fixture(scope="session")

@@ -58,7 +58,8 @@ def processes(number):
                 status = (path / "status").read_text(errors="replace")
             except OSError:
                 continue  # it has ended
-            if f"\nUid:\t{number}\t" in status and "\nState:\tZ" not in status:
+            ended = "\nState:\tZ" in status and "\nThreads:\t1\n" in status  # others go on when only the first has
+            if f"\nUid:\t{number}\t" in status and not ended:
                 found.append(path)
     return found
 

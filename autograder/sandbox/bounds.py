@@ -6,6 +6,7 @@ from pathlib import Path
 COURSE = Path("/course")  # where notebooks run inside; the students' package lies in it
 WRITABLE = (Path("/tmp"), Path("/dev/shm"), COURSE)
 FOLDER = 50_000_000  # bytes in each of them
+SIGNALS = 1_000  # that wait, and timers, each of which has one: the kernel's memory
 PATIENCE = 60.0  # seconds for a sandbox to open or close, on a machine under load
 
 
@@ -46,6 +47,7 @@ class Limits:
             "RLIMIT_CORE": 0,
             "RLIMIT_NPROC": self.processes,
             "RLIMIT_NOFILE": self.descriptors,
+            "RLIMIT_SIGPENDING": SIGNALS,
         }
 
 

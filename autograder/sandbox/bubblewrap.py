@@ -12,6 +12,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+from functools import cache
 from pathlib import Path
 
 from .. import ASSIGNMENT
@@ -29,16 +30,19 @@ class Namespaces:
 
     def __init__(self, code):
         # The arguments go by a file: as a command line, anybody inside could read them.
-        with tempfile.TemporaryFile() as arguments, tempfile.TemporaryFile() as errors:
+        with tempfile.TemporaryFile() as arguments, tempfile.TemporaryFile() as rules:
             arguments.write(b"\0".join(os.fsencode(argument) for argument in command(code)))
             arguments.seek(0)
+            rules.write(compiled_filter())  # also for those that only hold the sandbox open: nobody in it needs more
+            rules.seek(0)
             information, theirs = os.pipe()
+            given = {"--args": arguments.fileno(), "--seccomp": rules.fileno(), "--info-fd": theirs}
             self.process = subprocess.Popen(
-                [shutil.which("bwrap"), "--args", str(arguments.fileno()), "--info-fd", str(theirs), "cat"],
+                [shutil.which("bwrap"), *(str(word) for option in given.items() for word in option), "cat"],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
-                stderr=errors,
-                pass_fds=(arguments.fileno(), theirs),
+                stderr=subprocess.PIPE,  # no file of ours, which could be written to from inside
+                pass_fds=given.values(),
                 env={},  # what bubblewrap itself was started with can be read inside
                 start_new_session=True,  # Ctrl-C is for the grader
             )
@@ -54,13 +58,11 @@ class Namespaces:
             except (ValueError, OSError):
                 started = False
             if not started:
-                self.close()
-                errors.seek(0)
-                said = " ".join(errors.read().decode(errors="replace").split())
+                said = " ".join(self.close().decode(errors="replace").split())
                 raise NotStarted(said[:300] or f"bubblewrap ended with exit code {self.process.returncode}")
 
     def close(self):
-        """End every process inside, and wait until they are gone."""
+        """End every process inside, and wait until they are gone; what bubblewrap has said, as bytes."""
         if self.pidfd is not None:
             try:
                 signal.pidfd_send_signal(self.pidfd, signal.SIGKILL)
@@ -71,9 +73,18 @@ class Namespaces:
             self.pidfd = None
         else:
             self.process.kill()
-        self.process.stdin.close()
-        self.process.stdout.close()
-        self.process.wait()
+        return self.process.communicate()[1]
+
+
+@cache
+def compiled_filter():
+    """The filter of system calls, as the kernel takes it: bytes."""
+    from .seccomp import notebook_filter  # only here: on a machine without its library, `probe` says so
+
+    with tempfile.TemporaryFile() as file:
+        notebook_filter().export_bpf(file)
+        file.seek(0)
+        return file.read()
 
 
 def command(code):
@@ -90,7 +101,8 @@ def command(code):
             arguments += ["--symlink", os.readlink(Path("/", link)), f"/{link}"]
         elif Path("/", link).is_dir():
             arguments += ["--ro-bind", f"/{link}", f"/{link}"]
-    arguments += ["--proc", "/proc", "--dev", "/dev"]
+    # Memory that is shared over /dev/zero would count for nobody; an empty file instead.
+    arguments += ["--proc", "/proc", "--dev", "/dev", "--dev-bind", "/dev/null", "/dev/zero"]
     for folder in map(str, WRITABLE):
         arguments += ["--perms", "1777", "--size", str(FOLDER), "--tmpfs", folder]
     arguments += ["--perms", "0777", "--dir", str(COURSE / ASSIGNMENT)]

@@ -24,7 +24,7 @@ from channel import Channel, Closed
 
 CLONE_NEWUSER, CLONE_NEWPID = 0x10000000, 0x20000000
 NAMESPACES = 0x00020000 | 0x04000000 | 0x08000000 | 0x40000000 | 0x02000000  # mounts, host name, IPC, network, cgroups
-PR_SET_PDEATHSIG, PR_SET_DUMPABLE, PR_CAPBSET_DROP = 1, 4, 24
+PR_SET_PDEATHSIG, PR_SET_DUMPABLE, PR_CAPBSET_DROP, PR_SET_THP_DISABLE = 1, 4, 24, 41
 LAST_CAPABILITY = 63
 
 
@@ -164,6 +164,7 @@ def _notebook(libc, executor, rules, connection):
         for name, amount in settings["limits"].items():
             resource.setrlimit(getattr(resource, name), (amount, amount))
         if settings["isolated"]:
+            libc.prctl(PR_SET_THP_DISABLE, 1, 0, 0, 0)  # one that is unmapped in part stays, and counts for nobody
             _become_nobody(libc, settings["number"])
             _die_with_parent(libc)  # another user's process no longer would
             rules.load()
@@ -215,6 +216,8 @@ class _Capabilities(ctypes.Structure):
 
 def _become_nobody(libc, number):
     """Give up root, or what entering one's own user namespace has given: no user, no group, no capability."""
+    if os.getuid() != 0:
+        _leave_user_namespace(libc)
     for capability in range(LAST_CAPABILITY + 1):
         libc.prctl(PR_CAPBSET_DROP, capability, 0, 0, 0)  # fails for numbers that this kernel does not have
     if os.getuid() == 0:
@@ -225,3 +228,14 @@ def _become_nobody(libc, number):
     if libc.capset(ctypes.byref(header), ctypes.byref(none)) != 0:
         raise OSError(ctypes.get_errno(), "capabilities could not be dropped")
     libc.prctl(PR_SET_DUMPABLE, 1, 0, 0, 0)  # its own /proc/self is readable again, as in any process
+
+
+def _leave_user_namespace(libc):
+    """Go into one below the sandbox's own: from there the same user's processes in it, which hold it open, cannot be
+    read or written (as root grades, they are another user's)."""
+    user, group = os.getuid(), os.getgid()
+    if libc.unshare(CLONE_NEWUSER) != 0:
+        raise OSError(ctypes.get_errno(), "a notebook's own user namespace could not be made")
+    libc.prctl(PR_SET_DUMPABLE, 1, 0, 0, 0)  # or else the files below would be root's
+    for name, line in ("setgroups", "deny"), ("uid_map", f"{user} {user} 1"), ("gid_map", f"{group} {group} 1"):
+        Path("/proc/self", name).write_text(line)

@@ -5,12 +5,19 @@ the sandbox, or is a door into the kernel that no notebook uses, is refused with
 """
 
 import errno
+import fcntl
+import mmap
 import socket
 
 import pyseccomp
 
-# Memory that counts for no process: it stays when nobody maps it.
-UNCOUNTED_MEMORY = "memfd_create memfd_secret shmget shmat shmdt shmctl msgget msgsnd msgrcv msgctl semget semop semctl"
+# Memory that counts for no process: it stays when nobody maps it, or lies in the kernel.
+UNCOUNTED_MEMORY = (
+    "memfd_create memfd_secret shmget shmat shmdt shmctl msgget msgsnd msgrcv msgctl semget semop semctl mq_open "
+    "io_setup inotify_init inotify_init1 listen setsockopt landlock_create_ruleset"
+)
+# They leave whole pages in pipes and sockets, which count the bytes. Whoever copies so does without, where it is unknown.
+PAGES = "splice tee sendfile"
 # Other processes, and new or other namespaces.
 REACHING_OUT = (
     "ptrace process_vm_readv process_vm_writev process_madvise kcmp pidfd_getfd unshare setns mount umount2 pivot_root "
@@ -24,22 +31,41 @@ SELDOM_USED = (
     "modify_ldt uselib ustat sysfs vhangup lookup_dcookie fanotify_init migrate_pages move_pages vmsplice"
 )
 NEW_NAMESPACES = (0x00020000, 0x02000000, 0x04000000, 0x08000000, 0x10000000, 0x20000000, 0x40000000)  # CLONE_NEW…
-F_SETPIPE_SZ = 1031  # fcntl
-BUFFERS = (socket.SO_SNDBUF, socket.SO_RCVBUF)
+CLONE_FILES, CLONE_PARENT, CLONE_THREAD = 0x400, 0x8000, 0x10000
+CLOSE_RANGE_UNSHARE = 2
+F_SETPIPE_SZ, F_OFD_SETLK, F_OFD_SETLKW = 1031, 37, 38  # fcntl
+LOCKS = F_OFD_SETLK, F_OFD_SETLKW, fcntl.F_SETLK, fcntl.F_SETLKW  # of ranges: a file has any number of them
+SHARED_ANONYMOUS, MAP_HUGETLB = mmap.MAP_SHARED | mmap.MAP_ANONYMOUS, 0x40000
+PR_SET_THP_DISABLE = 41
+SOCKET_TYPE = 0xF  # in what socket(2) is given, the rest is flags
+INT = 0xFFFFFFFF  # what the kernel sees of an argument of this type: a comparison with all bits would be passed by the others
 
 
 def notebook_filter():
     """A pyseccomp.SyscallFilter; its `load()` puts it on the calling process for good, and on all that it starts."""
     Arg, refuse = pyseccomp.Arg, pyseccomp.ERRNO(errno.EPERM)
     rules = pyseccomp.SyscallFilter(pyseccomp.ALLOW)
+
+    def refuse_bits(name, argument, mask, value, *more):
+        rules.add_rule(refuse, name, Arg(argument, pyseccomp.MASKED_EQ, mask, value), *more)
+
     for name in f"{UNCOUNTED_MEMORY} {REACHING_OUT} {SELDOM_USED}".split():
         rules.add_rule(refuse, name)
-    rules.add_rule(pyseccomp.ERRNO(errno.ENOSYS), "clone3")  # its flags cannot be seen; the C library then uses clone
-    for flag in NEW_NAMESPACES:
-        rules.add_rule(refuse, "clone", Arg(0, pyseccomp.MASKED_EQ, flag, flag))
+    for name in ("clone3", *PAGES.split()):  # the flags of the first cannot be seen; the C library then uses clone
+        rules.add_rule(pyseccomp.ERRNO(errno.ENOSYS), name)
+    # A child of the parent's is outside, where its processor time counts for nobody; descriptors are looked for in processes.
+    for flag in (*NEW_NAMESPACES, CLONE_PARENT):
+        refuse_bits("clone", 0, flag, flag)
+    for only in (CLONE_FILES, CLONE_THREAD):
+        refuse_bits("clone", 0, CLONE_FILES | CLONE_THREAD, only)
+    refuse_bits("close_range", 2, CLOSE_RANGE_UNSHARE, CLOSE_RANGE_UNSHARE)
+    refuse_bits("mmap", 3, SHARED_ANONYMOUS, SHARED_ANONYMOUS)
+    refuse_bits("mmap", 3, MAP_HUGETLB, MAP_HUGETLB)  # pages that are set aside for others
+    refuse_bits("prctl", 0, INT, PR_SET_THP_DISABLE)  # forkserver.py has disabled them
     for name in ("socket", "socketpair"):  # AF_VSOCK, for one, knows no network namespace
         rules.add_rule(pyseccomp.ERRNO(errno.ENETUNREACH), name, Arg(0, pyseccomp.NE, socket.AF_UNIX))
-    for option in BUFFERS:  # sockets and pipes hold what is written to them, and no limit counts it
-        rules.add_rule(refuse, "setsockopt", Arg(1, pyseccomp.EQ, socket.SOL_SOCKET), Arg(2, pyseccomp.EQ, int(option)))
-    rules.add_rule(refuse, "fcntl", Arg(1, pyseccomp.EQ, F_SETPIPE_SZ))
+        for kind in (socket.SOCK_DGRAM, socket.SOCK_RAW, socket.SOCK_SEQPACKET):  # one keeps what many have sent
+            refuse_bits(name, 1, SOCKET_TYPE, kind, Arg(0, pyseccomp.EQ, socket.AF_UNIX))
+    for command in (F_SETPIPE_SZ, *LOCKS):
+        refuse_bits("fcntl", 1, INT, command)
     return rules

@@ -1,6 +1,8 @@
 """What a sandbox uses, read from outside through /proc, where nothing that runs inside can change it."""
 
+import math
 import os
+import re
 from pathlib import Path
 
 from .account import processes
@@ -12,7 +14,10 @@ PUBLIC = (
     "/dev/shm",
     "/run/lock",
 )  # where any user may write; a notebook's own folder lies in the first
-TICK = 1 / os.sysconf("SC_CLK_TCK")  # seconds; the unit of processor time in /proc
+TICKS = os.sysconf("SC_CLK_TCK")  # in a second; the unit of processor time in /proc
+# Bytes of the kernel's, which no process is charged for, of a pipe or socket (as if it were full), terminal, and mapping.
+BUFFER, TERMINAL, MAPPING = 320_000, 1_300_000, 500
+SHARED_DEVICE = b" /dev/zero (deleted)\n"  # what is mapped of it may be a page of all that lies there
 
 
 def waited(process):
@@ -28,26 +33,45 @@ class Watch:
 
     def __init__(self, first, limits):
         self.root, self.limits = Path(f"/proc/{first}/root"), limits
+        self.used = {}  # {(number of a process, when it started): ticks of processor time of its own}
+        self.ticks = 0  # of all that have been there
 
     def excess(self):
         """Which limit of the whole sandbox is passed, in words, or None."""
-        memory = processor = 0
-        for process in self._processes():
-            memory += _memory(process)
-            processor += _processor(process)
+        found = self._processes()
+        buffers = set().union(*map(_buffers, found))
+        memory = sum(map(_memory, found)) + BUFFER * len(buffers) + TERMINAL * self._terminals()
+        self._count(found)
         if memory > self.limits.memory:
             return f"more than {self.limits.memory / 1e9:g} GB of memory"
-        if processor > self.limits.cpu:
+        if self.ticks > TICKS * self.limits.cpu:
             return f"more than {self.limits.cpu:g} s of processor time"
         if self._files() > self.limits.files:
             return f"more than {self.limits.files} files"
         return None
 
+    def _count(self, processes):
+        """Add up processor time. What ends between two looks is in what its parent has used, or, where nobody waits for
+        it, stands with what was seen of it, and a tick."""
+        now = 0
+        for process in processes:
+            try:
+                fields = (process / "stat").read_text().rpartition(")")[2].split()
+            except OSError:
+                continue  # it has ended
+            self.used[process.name, fields[19]] = sum(map(int, fields[11:13]))
+            now += sum(map(int, fields[11:15]))  # with that of children which it has waited for
+        self.ticks = max(self.ticks, now, sum(self.used.values()) + self._started())
+
+    def _started(self):
+        """How many processes and threads there have been at least: they are numbered from 1 in a sandbox."""
+        return max(int(number) for number, _ in self.used) if self.used else 0
+
     def _processes(self):
-        try:
-            return [path for path in (self.root / "proc").iterdir() if path.name.isdigit()]
-        except OSError:
-            return []  # it has ended
+        return [path for path in _entries(self.root / "proc") if path.name.isdigit()]
+
+    def _terminals(self):
+        return len(_entries(self.root / "dev/pts"))
 
     def _files(self):
         try:
@@ -76,6 +100,12 @@ class UserWatch(Watch):
     def _processes(self):
         return processes(self.number)
 
+    def _started(self):
+        return len(self.used)  # numbers are those of the whole machine's
+
+    def _terminals(self):
+        return sum(_owner(terminal) == self.number for terminal in _entries(Path("/dev/pts")))
+
     def _files(self):
         """How many there are; their size, too, is added up."""
         count, self.size, waiting = 0, 0, [folder for folder in PUBLIC if os.path.isdir(folder)]
@@ -96,23 +126,53 @@ class UserWatch(Watch):
 
 def _memory(process):
     """Bytes that a process holds; those that it shares with others are shared out between them."""
-    try:
-        for line in (process / "smaps_rollup").read_text().splitlines():
-            if line.startswith("Pss:"):
-                return int(line.split()[1]) * 1024
-    except OSError:
-        try:  # it hides itself; then what it shares is left out
-            _, resident, shared, *_ = map(int, (process / "statm").read_text().split())
-            return (resident - shared) * os.sysconf("SC_PAGE_SIZE")
+    for task in _tasks(process):  # its first thread may have ended, and shows nothing then
+        try:
+            maps = (task / "maps").read_bytes()
+            if SHARED_DEVICE in maps:
+                return math.inf
+            words = f"{(task / 'smaps_rollup').read_text()}\n{(task / 'status').read_text(errors='replace')}"
+            held = sum(int(size) for size in re.findall(r"^(?:Pss|SwapPss|VmPTE):\s*(\d+) kB", words, re.MULTILINE))
+            return held * 1024 + MAPPING * maps.count(b"\n")
         except OSError:
-            pass
+            try:  # it hides itself; then what it shares is left out
+                _, resident, shared, *_ = map(int, (task / "statm").read_text().split())
+                if resident:
+                    return (resident - shared) * os.sysconf("SC_PAGE_SIZE")
+            except OSError:
+                continue
     return 0  # it has ended
 
 
-def _processor(process):
-    """Seconds of processor time, those of its ended children included."""
+def _buffers(process):
+    """The pipes and sockets that a process has open, each by its own name."""
+    for task in _tasks(process):
+        found = [_link(path) for path in _entries(task / "fd")]
+        if found:
+            return {name for name in found if name.startswith(("socket:", "pipe:"))}
+    return set()
+
+
+def _tasks(process):
+    return sorted(_entries(process / "task"), key=lambda task: int(task.name))
+
+
+def _entries(folder):
     try:
-        fields = (process / "stat").read_text().rpartition(")")[2].split()
+        return list(folder.iterdir())
     except OSError:
-        return 0.0
-    return sum(map(int, fields[11:15])) * TICK
+        return []  # it has ended
+
+
+def _link(path):
+    try:
+        return os.readlink(path)
+    except OSError:
+        return ""  # it has just been closed
+
+
+def _owner(path):
+    try:
+        return path.stat().st_uid
+    except OSError:
+        return None  # it has just been closed

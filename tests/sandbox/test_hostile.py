@@ -454,6 +454,29 @@ ESCAPES = [
         "seen []",
     ),
     harm(
+        "the processes that hold the sandbox open",
+        """
+        import os
+        reached = []
+        for process in os.listdir('/proc'):
+            if process.isdigit() and int(process) != os.getpid():
+                for name in ('mem', 'maps', 'environ', 'auxv', 'syscall', 'personality', 'stack', 'io'):
+                    try:
+                        file = os.open(f'/proc/{process}/{name}', os.O_RDWR if name == 'mem' else os.O_RDONLY)
+                        reached.append((process, name, name == 'mem' or os.read(file, 100)))
+                    except OSError:
+                        continue
+                links = ['root', 'cwd', 'exe', 'ns/user', 'ns/mnt', *(f'fd/{number}' for number in range(64))]
+                for name in links:
+                    try:
+                        reached.append((process, name, os.readlink(f'/proc/{process}/{name}')))
+                    except OSError:
+                        continue
+        print('reached', reached)
+        """,
+        "reached []",
+    ),
+    harm(
         "the loopback of the machine",
         """
         import os, socket, subprocess
@@ -541,7 +564,7 @@ ESCAPES = [
         import ctypes, mmap, os, platform
         if platform.machine() != 'x86_64':
             os._exit(1)
-        code = mmap.mmap(-1, 4096, prot=mmap.PROT_READ | mmap.PROT_WRITE | mmap.PROT_EXEC)
+        code = mmap.mmap(-1, 4096, flags=mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS, prot=7)
         code.write(b'\\xb8\\x14\\x00\\x00\\x00\\xcd\\x80\\xc3')  # getpid, as a 32-bit program asks for it
         print('answered', ctypes.CFUNCTYPE(ctypes.c_int)(ctypes.addressof(ctypes.c_char.from_buffer(code)))())
         """,
@@ -779,18 +802,18 @@ MEMORY = [
         USED + " 1 GB of memory",
     ),
     harm(
-        "much that is shared",
+        "shared memory that nobody maps",
         """
-        import mmap, os, time
-        for _ in range(8):
-            if os.fork() == 0:
-                x = mmap.mmap(-1, 300_000_000)
-                x.write(b'x' * 300_000_000)
-                time.sleep(60)
-                os._exit(0)
-        time.sleep(60)
+        import mmap, os
+        got = []
+        for number in (-1, os.open('/dev/zero', os.O_RDWR)):
+            try:
+                got.append(mmap.mmap(number, 4096))
+            except OSError:
+                continue
+        print('got', got)
         """,
-        USED + " 1 GB of memory",
+        "got []",
     ),
     harm(
         "small folders filled",

@@ -215,6 +215,47 @@ def test_processor_time_is_limited(sandboxed):
     assert killed(Limits(cpu=3.0), cell) == "it used more than 3 s of processor time"
 
 
+@pytest.mark.parametrize("heir", ["its parent", "nobody"])
+def test_processor_time_of_children_whom_nobody_waits_for_is_limited(sandboxed, heir):
+    """Of each of them there is little, and the kernel does not add it to their parent's."""
+    cell = (
+        "import os, signal, time\nsignal.signal(signal.SIGCHLD, signal.SIG_IGN)\nwhile True:\n    if os.fork() == 0:\n"
+        f"        if {heir == 'nobody'} and os.fork(): os._exit(0)\n"
+        "        while time.process_time() < {amount}: pass\n        os._exit(0)\n    time.sleep({amount})"
+    )
+    for amount in (0.004, 0.1):
+        reason = killed(Limits(cell=60, cpu=2.0), cell.replace("{amount}", str(amount)))
+        assert reason == "it used more than 2 s of processor time"
+
+
+def test_sockets_of_many_processes_are_limited(sandboxed):
+    """What lies in them is in no process's memory; so each of them counts as if it were full."""
+    pairs = "x = [socket.socketpair() for _ in range(28)]; time.sleep(60)"
+    cell = "import socket\n" + FORKED.format(count=38, work=pairs, after="time.sleep(60)")
+    assert killed(Limits(cell=60, memory=700_000_000), cell) == "it used more than 0.7 GB of memory"
+
+
+def test_timers_are_limited(sandbox):
+    cell = "import ctypes; make, timer, made = ctypes.CDLL(None).timer_create, ctypes.c_void_p(), 0\n"
+    cell += "while made < 3_000 and make(1, None, ctypes.byref(timer)) == 0: made += 1\n"
+    assert value(sandbox, cell + "0 < made <= 1_000") == "True"
+
+
+def test_terminals_of_many_processes_are_limited(sandboxed):
+    cell = FORKED.format(count=30, work="x = [os.openpty() for _ in range(24)]; time.sleep(60)", after="time.sleep(60)")
+    assert killed(Limits(cell=60, memory=700_000_000), cell) == "it used more than 0.7 GB of memory"
+
+
+def test_memory_of_a_process_whose_first_thread_has_ended_is_limited(sandboxed):
+    """The kernel shows nothing of it where it shows other processes' memory."""
+    work = "threading.Thread(target=hold).start(); ctypes.CDLL(None).syscall(EXIT, 0)"
+    cell = (
+        "import ctypes, platform, threading, time\nEXIT = 60 if platform.machine() == 'x86_64' else 93\n"
+        "def hold():\n    x = bytearray(100_000_000)\n    time.sleep(60)\n"
+    ) + FORKED.format(count=8, work=work, after="time.sleep(60)")
+    assert killed(Limits(cell=60, memory=600_000_000), cell) == "it used more than 0.6 GB of memory"
+
+
 def test_the_number_of_files_is_limited(sandboxed):
     cell = "for n in range(10**9):\n    open(f'/tmp/{n}', 'w').close()"
     assert killed(Limits(files=2_000), cell) == "it used more than 2000 files"
@@ -263,6 +304,128 @@ def test_the_kernel_refuses_what_no_notebook_needs(sandbox, attempt):
         "        raise OSError(ctypes.get_errno(), name)\n"
     )
     assert error(sandbox, define + attempt) in ("OSError", "PermissionError")
+
+
+# {what would hold memory, or use a processor, that is counted for nobody: (how, what the filter says)}
+UNCOUNTED = {
+    "shared memory": ("mmap.mmap(-1, 4096)", "EPERM"),
+    "shared memory, flags checked": ("mmap.mmap(-1, 4096, flags=mmap.MAP_ANONYMOUS | 3)", "EPERM"),
+    "shared memory of a device": ("mmap.mmap(os.open('/dev/zero', os.O_RDWR), 4096)", "ENODEV"),
+    "huge pages": ("mmap.mmap(-1, 1 << 21, flags=mmap.MAP_ANONYMOUS | mmap.MAP_PRIVATE | 0x40000)", "EPERM"),
+    "transparent huge pages": ("call('prctl', 41, 0, 0, 0, 0)", "EPERM"),
+    "pages in sockets": ("os.sendfile(socket.socketpair()[0].fileno(), os.open(PYTHON, 0), 0, 1)", "ENOSYS"),
+    "pages in pipes": ("call('splice', os.open(PYTHON, 0), None, os.pipe()[1], None, 1, 0)", "ENOSYS"),
+    "pages of pipes": ("call('tee', os.pipe()[0], os.pipe()[1], 1, 2)", "ENOSYS"),
+    "datagrams": ("socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)", "EPERM"),
+    "datagrams between two": ("socket.socketpair(socket.AF_UNIX, socket.SOCK_DGRAM | socket.SOCK_CLOEXEC)", "EPERM"),
+    "datagrams by another name": ("socket.socket(socket.AF_UNIX, socket.SOCK_RAW)", "EPERM"),
+    "packets": ("socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)", "EPERM"),
+    "connections that wait": ("call('listen', socket.socket(socket.AF_UNIX).fileno(), 1)", "EPERM"),
+    "filters of sockets": (
+        "socket.socketpair()[0].setsockopt(socket.SOL_SOCKET, 26, struct.pack('HxxxxxxP', 1, ctypes.addressof(RETURN)))",
+        "EPERM",
+    ),
+    "watched files": ("call('inotify_init1', 0)", "EPERM"),
+    "message queues": ("call('mq_open', b'/x', os.O_RDWR | os.O_CREAT, 0o600, None)", "EPERM"),
+    "contexts of asynchronous files": ("call('syscall', 206, 1, ctypes.byref(ctypes.c_long()))", "EPERM"),
+    "rule sets": ("call('syscall', 444, ctypes.byref(ctypes.c_uint64(1)), 8, 0)", "EPERM"),
+    "locks": ("fcntl.lockf(open('/tmp/lock', 'w'), fcntl.LOCK_EX)", "EPERM"),
+    "locks, with bits that the kernel passes over": (
+        "call('syscall', 72, ctypes.c_long(os.open('/tmp/lock', 66)), ctypes.c_long(1 << 32 | fcntl.F_SETLK), FLOCK)",
+        "EPERM",
+    ),
+    "large pipes, with such bits": (
+        "call('syscall', 72, ctypes.c_long(os.pipe()[1]), ctypes.c_long(1 << 32 | 1031), ctypes.c_long(4096))",
+        "EPERM",
+    ),
+    "transparent huge pages, with such bits": (
+        "call('syscall', 157, ctypes.c_long(1 << 32 | 41), *[ctypes.c_long(0)] * 4)",
+        "EPERM",
+    ),
+    "locks of open files": (
+        "fcntl.fcntl(open('/tmp/lock', 'w'), 37, FLOCK)",
+        "EPERM",
+    ),
+    "a child of the grader's": ("call('syscall', 56, 0x8000 | signal.SIGCHLD, 0, 0, 0, 0) or os._exit(0)", "EPERM"),
+    "a child with the same descriptors": (
+        "call('syscall', 56, 0x400 | signal.SIGCHLD, 0, 0, 0, 0) or os._exit(0)",
+        "EPERM",
+    ),
+    "descriptors of one thread": ("call('close_range', 100, 101, 2)", "EPERM"),
+}
+
+
+@pytest.mark.parametrize("attempt, refused", UNCOUNTED.values(), ids=UNCOUNTED)
+def test_the_kernel_refuses_what_would_count_for_nobody(sandbox, attempt, refused):
+    cell = f"""
+import ctypes, errno, fcntl, mmap, os, signal, socket, struct, sys
+PYTHON, RETURN = os.path.realpath(sys.executable), (ctypes.c_uint64 * 1)(6)
+FLOCK = struct.pack('hhqqi4x', fcntl.F_WRLCK, 0, 0, 1, 0)
+def call(name, *arguments):
+    found = getattr(ctypes.CDLL(None, use_errno=True), name)(*arguments)
+    if found == -1:
+        raise OSError(ctypes.get_errno(), name)
+    return found
+try:
+    {attempt}
+except OSError as error:
+    print(errno.errorcode[error.errno])"""
+    assert shown(run(sandbox, cell)) == [("stdout", f"{refused}\n")]
+
+
+# What honest notebooks do with what is left of it, and what they see then.
+SHARING = {
+    "memory of one's own": (
+        "import mmap; len(mmap.mmap(-1, 4096, flags=mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS))",
+        "4096",
+    ),
+    "a file in memory": (
+        "import mmap, os; open('x', 'wb').write(b'abc'); x = mmap.mmap(os.open('x', os.O_RDWR), 0); x[:]",
+        "b'abc'",
+    ),
+    "processes": ("import multiprocessing as m\nwith m.Pool(2) as pool: x = pool.map(abs, [-1, 2])\nx", "[1, 2]"),
+    "shared values": ("import multiprocessing as m; x = m.Value('i', 7); x.value", "7"),
+    "shared arrays": ("from multiprocessing.shared_memory import *; SharedMemory('x', True, 99).size >= 99", "True"),
+    "an executor": (
+        "from concurrent.futures import *\nwith ProcessPoolExecutor(2) as e: x = list(e.map(abs, [-3]))\nx",
+        "[3]",
+    ),
+    "threads": ("from multiprocessing.pool import ThreadPool; ThreadPool(3).map(abs, [-1])", "[1]"),
+    "a command": ("!echo seen", "seen\r\n"),
+    "commands in a pipe": (
+        "import subprocess as s; s.check_output('head -c 9 /dev/urandom | wc -c', shell=True)",
+        "b'9\\n'",
+    ),
+    "a copy": ("import shutil; open('x', 'w').write('y'); open(shutil.copyfile('x', 'z')).read()", "'y'"),
+    "a coroutine that waits for a process": (
+        "import asyncio as a\nx = await a.create_subprocess_exec('true')\nawait x.wait()",
+        "0",
+    ),
+    "zeros": ("len(bytes(5))", "5"),
+}
+
+
+@pytest.mark.parametrize("cell, seen", SHARING.values(), ids=SHARING)
+def test_what_honest_notebooks_share_goes_on_to_work(sandboxed, cell, seen):
+    with Sandbox(PACKAGE) as patient:
+        assert [text for _, text in shown(run(patient, cell))] == [seen]
+
+
+def test_everything_in_a_sandbox_is_filtered(sandbox):
+    """bubblewrap's own processes, too: the first in it, and the one that holds it open."""
+    cell = "import glob; sorted({l for p in glob.glob('/proc/[0-9]*/status') for l in open(p) if 'Seccomp:' in l})"
+    assert value(sandbox, cell) == r"['Seccomp:\t2\n']"
+
+
+def test_huge_pages_are_off(sandbox):
+    """Of one that is unmapped but for 4 kB, all 2 MB stay for a while, and count for nobody."""
+    assert value(sandbox, "import ctypes; ctypes.CDLL(None).prctl(42, 0, 0, 0, 0)") == "1"
+
+
+def test_what_bubblewrap_says_goes_into_a_pipe(sandbox):
+    """Not into a file of the grader's, which could be filled or cut by who reaches it."""
+    with sandbox.notebook() as notebook:
+        assert os.readlink(f"/proc/{notebook.namespaces.pid}/fd/2").startswith("pipe:")
 
 
 def test_output_is_limited(sandbox):
