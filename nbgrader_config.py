@@ -37,7 +37,9 @@ c.Autograde.autograde_preprocessors = [
 ]
 # What students write is shown in feedback and formgrader without scripts and without anything from elsewhere.
 c.HTMLExporter.filters = {"markdown2html": "autograder.pages.markdown.markdown2html"}
-# Students write into the exchange: what they put there neither fetches files of the instructor's nor stops the others.
+# Students write into the exchange: what they put there counts as theirs alone, neither fetches files of the instructor's nor
+# stops the others.
+c.ExchangeFactory.release_assignment = "autograder.intake.exchange.ReleaseAssignment"
 c.ExchangeFactory.collect = "autograder.intake.exchange.Collect"
 c.ExchangeFactory.release_feedback = "autograder.intake.exchange.ReleaseFeedback"
 # `nbgrader zip_collect` knows the downloads of learning management systems.

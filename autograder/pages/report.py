@@ -4,7 +4,6 @@ Everything is read back from the autograded notebooks and the gradebook, so it i
 """
 
 import csv
-import io
 import os
 from collections import Counter, defaultdict
 from dataclasses import astuple, fields
@@ -16,6 +15,7 @@ from markupsafe import Markup
 from ..course import ASSIGNMENT
 from ..files import replace
 from ..grading.judge import Row
+from ..names import table
 from . import examples
 from . import report_data as findings
 from .rendering import environment
@@ -81,11 +81,8 @@ def _write_verdicts(course, works, graded):
     path = course.reports / "verdicts.csv"
     if graded and path.exists() and path.stat().st_mtime < graded:
         path.replace(course.reports / "before.csv")
-    table = io.StringIO()
-    writer = csv.writer(table, lineterminator="\n")
-    writer.writerow(COLUMNS)
-    writer.writerows((student, *astuple(row)) for student, work in works.items() for row in work.rows)
-    replace(path, table.getvalue())
+    rows = ((student, *astuple(row)) for student, work in works.items() for row in work.rows)
+    replace(path, table([COLUMNS, *rows]))
     if graded:
         os.utime(path, (graded, graded))
 
