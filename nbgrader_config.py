@@ -43,7 +43,9 @@ c.HTMLExporter.filters = {
 }
 c.HTMLExporter.preprocessors = ["autograder.pages.bounded.Bounded"]
 c.HTMLExporter.template_file = f"{ROOT}/autograder/pages/templates/formgrade.html.j2"
-# Students write into the exchange: what they put there neither fetches files of the instructor's nor stops the others.
+# Students write into the exchange: what they put there counts as theirs alone, neither fetches files of the instructor's nor
+# stops the others.
+c.ExchangeFactory.release_assignment = "autograder.intake.exchange.ReleaseAssignment"
 c.ExchangeFactory.collect = "autograder.intake.exchange.Collect"
 c.ExchangeFactory.release_feedback = "autograder.intake.exchange.ReleaseFeedback"
 # `nbgrader zip_collect` knows the downloads of learning management systems.

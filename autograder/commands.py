@@ -15,6 +15,7 @@ from rich.text import Text
 
 from .course import ASSIGNMENT, Course, CourseError
 from .files import replace
+from .names import odd
 
 console = Console(highlight=False, soft_wrap=True)
 errors = Console(stderr=True, highlight=False, soft_wrap=True)
@@ -318,11 +319,9 @@ def grade(options):
         errors.print(
             f"{student}: no submission in submitted/{student}/{ASSIGNMENT}.{_meant(student, students)}", markup=False
         )
-    for student in here.astray() if not options.students else ():
-        errors.print(
-            f"{student}: not graded: its files have to be in submitted/{Path(student).stem}/{ASSIGNMENT}/.",
-            markup=False,
-        )
+    astray = {} if options.students else here.astray()
+    for name, what_to_do in astray.items():
+        errors.print(f"{name if name.isprintable() else repr(name)}: not graded: {what_to_do}.", markup=False)
     with Cluster(options.scheduler) if options.scheduler else nullcontext() as cluster:
         failed = _grade(
             here,
@@ -334,7 +333,7 @@ def grade(options):
             with_feedback=not options.no_feedback,
             cluster=cluster,
         )
-    return 1 if unknown or failed else 0
+    return 1 if unknown or failed or any(map(odd, astray)) else 0
 
 
 def _protection(here, unsafe, cluster=None):
@@ -542,8 +541,8 @@ def export(options):
     here = course()
     with Writer(here) as writer:
         found = export.totals(writer.gradebook)
-        text = export.text(here, writer.gradebook, found, options.format, options.column)
-        lines = list(export.remarks(found, options.format, export.absent(writer.gradebook)))
+        text, left_out = export.text(here, writer.gradebook, found, options.format, options.column)
+        lines = [*export.told(left_out), *export.remarks(found, options.format, export.absent(writer.gradebook))]
     if str(options.output) == "-":
         sys.stdout.write(text)
     elif not options.output.parent.is_dir():
@@ -553,7 +552,7 @@ def export(options):
         console.print(f"{options.output} is written.", markup=False)
     for line in lines:
         errors.print(line, markup=False)
-    return 0
+    return 1 if left_out else 0
 
 
 def test(options):

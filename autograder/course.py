@@ -7,6 +7,7 @@ from functools import cached_property
 from pathlib import Path
 
 from . import ASSIGNMENT
+from .names import odd
 from .released import NotANotebook, Released, read
 
 
@@ -82,12 +83,18 @@ class Course:
                 "There is no submitted/ folder. Put each student's files into "
                 f"submitted/STUDENT/{ASSIGNMENT}/ (or run `nbgrader collect {ASSIGNMENT}`), then grade."
             )
-        return sorted(name for name in self._folders() if self.submitted(name).is_dir())
+        return sorted(name for name in self._folders() if self.submitted(name).is_dir() and not odd(name))
 
-    def astray(self) -> list[str]:
-        """What lies in submitted/ and is no student's folder with a submission of this assignment in it."""
-        there = (path.name for path in (self.root / "submitted").iterdir() if not path.name.startswith("."))
-        return sorted(name for name in there if not self.submitted(name).is_dir())
+    def astray(self) -> dict[str, str]:
+        """{what lies in submitted/ and is no student's folder with a submission of this assignment: what to do}"""
+        there = sorted(path.name for path in (self.root / "submitted").iterdir() if not path.name.startswith("."))
+        found = {}
+        for name in there:
+            if problem := odd(name):
+                found[name] = f"its folder in submitted/ has to be called otherwise: {problem}"
+            elif not self.submitted(name).is_dir():
+                found[name] = f"its files have to be in submitted/{Path(name).stem}/{ASSIGNMENT}/"
+        return found
 
     def _folders(self):
         folders = (self.root / "submitted").iterdir()

@@ -20,7 +20,7 @@ ROOMS = {
         "summary",
     ],
     "autograder": [
-        "exercises environment files untrusted",
+        "exercises environment files names untrusted",
         "released",
         "course sandbox",
         "proving intake",

@@ -22,7 +22,6 @@ from nbgrader.api import (
     SubmittedAssignment,
     SubmittedNotebook,
 )
-from nbgrader.plugins import CsvExportPlugin
 from nbgrader.preprocessors import AssignLatePenalties
 from sqlalchemy import Engine, event, select, update
 from sqlalchemy.exc import DatabaseError, OperationalError
@@ -32,9 +31,14 @@ from ..files import replace
 from ..grading.marks import CellGrade, NotebookGrades
 from ..grading.records import ALONE
 from ..intake.submission import TIMESTAMP
+from ..names import table
 from . import registration
 from .nbgrader_api import db_url, settings
 
+EXPORTED = (
+    *("assignment", "duedate", "timestamp", "student_id", "last_name", "first_name", "email"),
+    *("raw_score", "late_submission_penalty", "score", "max_score"),
+)  # the columns of `nbgrader export`
 PATIENCE = 60.0  # seconds to wait for a database that somebody else has locked
 
 
@@ -105,12 +109,18 @@ class Writer:
         self._write_files(graded)
 
     def export(self, path):
-        """Write nbgrader's own CSV of the assignment's grades: what `nbgrader export` writes."""
-        fresh = path.with_name(f".{path.name}.new")
-        exporter = CsvExportPlugin(config=self.config)
-        exporter.to, exporter.assignment = str(fresh), [ASSIGNMENT]
-        exporter.export(self.gradebook)
-        fresh.replace(path)
+        """Write the assignment's grades as `nbgrader export` does, but so that a name stays in its cell, and is not run."""
+        assignment = self.gradebook.find_assignment(ASSIGNMENT)
+        done = {submission.student_id: submission for submission in self.gradebook.assignment_submissions(ASSIGNMENT)}
+        rows = [EXPORTED]
+        for who in self.gradebook.students:
+            when, points, penalty = None, 0.0, 0.0
+            if found := done.get(who.id):
+                when, points, penalty = found.timestamp, found.score, found.late_submission_penalty or 0.0
+            told = who.id, who.last_name, who.first_name, who.email
+            total = max(0.0, points - penalty)
+            rows.append((ASSIGNMENT, assignment.duedate, when, *told, points, penalty, total, assignment.max_score))
+        replace(path, table(rows))
 
     def grades(self):
         """What students are told of their points, {student: {notebook: NotebookGrades}}, in three queries for the whole class."""
@@ -174,9 +184,9 @@ class Writer:
             if notebooks[notebook]:
                 comments.append({"id": identifier, "auto_comment": notebooks[notebook].comments[self.cells[cell]]})
         penalties = [{"id": identifier, "late_submission_penalty": None} for identifier in notebooks]
-        for table, rows in ((Grade, grades), (Comment, comments), (SubmittedNotebook, penalties)):
+        for kind, rows in ((Grade, grades), (Comment, comments), (SubmittedNotebook, penalties)):
             if rows:
-                book.db.execute(update(table), rows)
+                book.db.execute(update(kind), rows)
         book.db.commit()
         if submission.total_seconds_late > 0:
             self._penalize(graded)

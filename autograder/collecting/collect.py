@@ -261,7 +261,7 @@ def _helps(form):
 def _called(who):
     if called := identifier(who):
         return called
-    raise Unsure("no folder can be called so; give a list with --students that tells who this is")
+    raise Unsure("it says nobody's name; give a list with --students that tells who this is")
 
 
 # --- what is remembered ---------------------------------------------------------------------------------------------

@@ -9,12 +9,13 @@ from datetime import datetime
 from pathlib import Path, PurePosixPath
 
 from ..course import CourseError
-from ..intake.archive import UNPRINTABLE, Archive, Bounds, Refused, is_noise
+from ..intake.archive import IN_LINES, Archive, Bounds, Refused, in_lines, is_noise
 from ..intake.reading import LARGEST
 from ..intake.submission import read
+from ..names import UNPRINTABLE
 
 # A class of thousands; names as long as a server can make them, of people, numbers and files in one.
-BOUNDS = Bounds(entries=200_000, all=200_000 * LARGEST, depth=40, name=2_000)
+BOUNDS = Bounds(entries=200_000, all=200_000 * LARGEST, depth=40, name=2_000, lines=False)
 COPY = re.compile(r"( ?\(\d+\)| copy( \d+)?)$")  # what browsers and the Finder add to a second download
 
 
@@ -59,7 +60,9 @@ class Download:
                     self.problems.append(f"{_clean(above / name)}: left out; it is a link.")
             folders[:] = sorted(name for name in folders if not is_noise(PurePosixPath(name)))
             for name in sorted(names):
-                if not is_noise(PurePosixPath(name)):
+                if in_lines(str(above / name)):
+                    self.problems.append(f"{_clean(above / name)}: left out; {IN_LINES}.")
+                elif not is_noise(PurePosixPath(name)):
                     self.files[_clean(above / name)] = above / name
                     newest = max(newest, os.lstat(os.path.join(here, name)).st_mtime)
         return datetime.fromtimestamp(newest) if newest else None

@@ -10,10 +10,10 @@ from collections import defaultdict
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
+from ..names import LONGEST, odd
 from .piece import Form, Found, Who, plainly
 
 KINDS = ("login", "email", "lms_id", "sid", "number")
-LONGEST = 128  # characters of a student's id in nbgrader's table
 
 
 LISTS = Form("list", "a class list", lambda _: 0.0, lambda *_: Found([], []), plainly)
@@ -173,14 +173,18 @@ class People:
 
 
 def identifier(who: Who) -> str:
-    """The student id of somebody whom nothing is known of but `who`: it has to do as a folder's name; "" for nobody."""
+    """The student id of somebody whom nothing is known of but `who`, or "" for nobody; raises Unsure as `folder_name`."""
     return folder_name(who.folder or who.login or who.email or who.lms_id or who.sid or who.name)
 
 
 def folder_name(text: str) -> str:
-    """A text as the name of a student's folder, and as a student's id: printable, no path, no option, no formula."""
-    text = unicodedata.normalize("NFC", text)
-    return re.sub(r"[^\w.@+'-]", "_", re.sub(r",\s+", "_", text.strip())).lstrip(".-=+@_")[:LONGEST].rstrip(".")
+    """A text as the name of a student's folder, and as a student's id; raises Unsure when that is none (`names.odd`)."""
+    text = re.sub(
+        r"^[.-]+\s+", "", unicodedata.normalize("NFC", text).strip()
+    )  # in place of a first name that nobody has
+    if text and (problem := odd(re.sub(r"[/\\]", "_", text)[:LONGEST].strip())):
+        raise Unsure(f"no folder can be called {text!r}: {problem}; give a list with --students that tells who this is")
+    return re.sub(r"[^\w.@+'-]", "_", re.sub(r",\s+", "_", text)).lstrip("_")[:LONGEST].rstrip(".")
 
 
 def _contradicts(person, who, form):

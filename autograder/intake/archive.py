@@ -16,20 +16,21 @@ import zlib
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
+from ..names import UNPRINTABLE
 from .reading import LARGEST
 
+IN_LINES = "its name has a line end in it"
 IS_UTF8, IS_ENCRYPTED = 1 << 11, 1  # general purpose flags
 UNICODE_PATH = 0x7075  # the extra field with an entry's name in UTF-8
 OF_A_NAME = 400  # bytes in the list of entries; without accents and time stamps it takes a third of that
 SMALL = 1_000_000  # bytes; what is below that may be as compressible as it likes
 NOISE = {"__MACOSX", ".DS_Store", "Thumbs.db", "desktop.ini", ".ipynb_checkpoints", "__pycache__", ".git"}
-UNPRINTABLE = re.compile("[\x00-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")  # controls, and what turns text
 
 
 @dataclass(frozen=True)
 class Bounds:
     """The most that is taken of an archive: entries, bytes of one and of all, folders in folders, bytes of a name, and how
-    many bytes may come out of one. As they stand they fit what one student hands in.
+    many bytes may come out of one; and what is asked of names. As they stand they fit what one student hands in.
     """
 
     entries: int = 1_000
@@ -38,6 +39,7 @@ class Bounds:
     depth: int = 20
     name: int = 255  # what file systems take
     ratio: int = 200
+    lines: bool = True  # whether a name may go on behind a line end; those of a class's download tell students apart
 
 
 class Refused(ValueError):
@@ -85,12 +87,13 @@ class Archive:
     def _list(self, info):
         if info.filename.endswith(("/", "\\")):  # a folder
             return
-        said = UNPRINTABLE.sub("_", _name(info))
+        name = _name(info)
+        said = UNPRINTABLE.sub("_", name)
         parts = PurePosixPath(said.replace("\\", "/")).parts
         path = PurePosixPath(*(unicodedata.normalize("NFC", part) for part in parts))
         if is_noise(path):
             return
-        if problem := self._problem(path, info):
+        if problem := IN_LINES if not self.bounds.lines and in_lines(name) else self._problem(path, info):
             self.problems.append(f"{said[:200]}: left out; {problem}.")
             return
         if path in self.entries:
@@ -144,6 +147,11 @@ def contents(source: Path | bytes, bounds: Bounds = Bounds()) -> tuple[dict[str,
             except Refused as refused:
                 archive.problems.append(f"{path}: left out; {refused}.")
         return files, archive.problems
+
+
+def in_lines(name: str) -> bool:
+    """Whether a name goes on behind a line end, as nobody's does; one at the end is of a file that macOS's Finder makes."""
+    return bool(re.search("[\r\n]", name.rstrip("\r")))
 
 
 def is_noise(path: PurePosixPath) -> bool:

@@ -1,59 +1,141 @@
 """nbgrader's exchange, where students write into a folder that the instructor's commands read.
 
-nbgrader_config.py names the two classes here. They do what nbgrader's own do, but nothing in a student's folder can
-bring files of the instructor's into a submission, or end the command for the students who come after.
+nbgrader_config.py names the classes here. They do what nbgrader's own do, but who owns a folder is who handed it in, and
+nothing in a student's folder can bring files of the instructor's into a submission, or end the command for the students
+who come after.
 """
 
 import glob
 import os
-from datetime import UTC, datetime
+import pwd
+import stat
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from nbgrader.exchange.default import ExchangeCollect, ExchangeReleaseFeedback
+from nbgrader.exchange.default import ExchangeCollect, ExchangeReleaseAssignment, ExchangeReleaseFeedback
+from nbgrader.utils import parse_utc
 
-from .submission import SECRET, TIMESTAMP, read, receipts
+from ..names import odd
+from .submission import AHEAD, SECRET, TIMESTAMP, read, receipts
 
-EARLIEST = datetime.min.replace(tzinfo=UTC)
+SUBMITTING = timedelta(hours=1)  # the longest that `nbgrader submit` may take to copy, and more
+
+
+class ReleaseAssignment(ExchangeReleaseAssignment):
+    """`nbgrader release_assignment`, after which students can neither remove nor rename each other's submissions."""
+
+    def init_dest(self):
+        super().init_dest()
+        for folder in not_sticky(self.root, self.coursedir.course_id):
+            try:
+                os.chmod(folder, stat.S_IMODE(os.stat(folder).st_mode) | stat.S_ISVTX)
+            except PermissionError:
+                self.log.warning("%s: who owns it has to run `chmod +t %s`.", folder, folder)
+
+
+def not_sticky(root: str, course_id: str) -> list[Path]:
+    """The folders of an exchange in which anybody may remove and rename what others have put there."""
+    folders = [Path(root), Path(root, course_id, "inbound")]
+    modes = [(folder, folder.stat().st_mode) for folder in folders if folder.is_dir()]
+    return [folder for folder, mode in modes if mode & stat.S_IWOTH and not mode & stat.S_ISVTX]
 
 
 class Collect(ExchangeCollect):
-    """`nbgrader collect`, which takes regular files only.
+    """`nbgrader collect`, which takes regular files only, of the account whose submission it is.
 
-    nbgrader's own follows links as the instructor, and so hands a student what a link points to: the solutions, say.
+    nbgrader's own follows links as the instructor, and so hands a student what a link points to: the solutions, say. It
+    takes folders that others have put there in a student's name, too, with a warning.
     """
 
+    def init_src(self):
+        super().init_src()
+        self.src_records = [record for record in self.src_records if record["username"]]
+
     def _path_to_record(self, path):
-        """A folder whose name says no time, which anybody may make there, is older than any submission."""
+        """What nbgrader knows of a folder, before it takes a student's newest; nobody's is what is passed over."""
         try:
-            return super()._path_to_record(path)
+            record = super()._path_to_record(path)
+            problem = odd(record["username"]) or self._problem(os.lstat(path), record)
         except (ValueError, OverflowError):
-            self.log.warning("%s: its name is not one that `nbgrader submit` gives.", path)
-            name = os.path.basename(path)
-            return {"username": name.rsplit("+", 3)[0], "filename": name, "timestamp": EARLIEST}
+            problem = "its name is not one that `nbgrader submit` gives"
+        except OSError as error:
+            problem = error.strerror
+        if not problem:
+            return record
+        self.log.warning("%s: passed over; %s.", repr(path), problem)
+        return {"username": "", "filename": os.path.basename(path), "timestamp": datetime.min}
+
+    def _problem(self, status, record):
+        if not stat.S_ISDIR(status.st_mode):
+            return "it is no folder"
+        if record["timestamp"] > datetime.now(UTC).replace(tzinfo=None) + AHEAD:
+            return f"its date, {record['timestamp']:%Y-%m-%d %H:%M} UTC, is still to come: it has to be handed in again"
+        owner = _account(status.st_uid)
+        if self.check_owner and owner != record["username"]:
+            return (
+                f"it belongs to the account {owner}, and who owns a folder is who handed it in (where students have no "
+                "accounts of their own: c.ExchangeCollect.check_owner = False in nbgrader_config.py)"
+            )
+        return None
+
+    def copy_files(self):
+        self.dated_back = []  # (student, what the submission says, when it was written)
+        super().copy_files()
+        if self.dated_back:
+            told = [
+                f"{who} (says {said:%Y-%m-%d %H:%M}, written {when:%Y-%m-%d %H:%M})"
+                for who, said, when in self.dated_back
+            ]
+            self.log.warning(
+                "Written later than they say, times in UTC: %s. When the exchange was copied or its permissions were changed "
+                "since, that is why. Otherwise somebody has changed the work, or its date, afterwards. What counts stands in "
+                "submitted/STUDENT/%s/%s: to have another time count, change it there, then grade.",
+                ", ".join(told), self.coursedir.assignment_id, TIMESTAMP,
+            )  # fmt: skip
 
     def do_copy(self, src, dest, log=None):
         try:
             with TemporaryDirectory() as taken:
-                self._take(Path(src), Path(taken))
+                written = self._take(Path(src), Path(taken))
+                who, _, said, *_ = os.path.basename(src).rsplit("+", 3)
+                # As `nbgrader submit` does; a student may have written another one into the file, or none.
+                Path(taken, TIMESTAMP).write_text(said)
                 super().do_copy(taken, dest, log)
+            if written - parse_utc(said) > SUBMITTING:
+                self.dated_back.append((who, parse_utc(said), written))
         except (OSError, RuntimeError) as error:
             self.log.error("%s: not collected: %s", src, error)
 
     def _take(self, src, taken):
+        """Copy what is in a submission; when the last of it was written, which its student cannot change, in UTC."""
         room = most = 1000 * self.coursedir.max_dir_size  # bytes; more than that nbgrader refuses
+        owner, latest = os.lstat(src).st_uid, 0.0
         for here, _, names, descriptor in os.fwalk(src, follow_symlinks=False):
             folder = taken / Path(here).relative_to(src)
             folder.mkdir(exist_ok=True)
             for name in names:
+                status = os.stat(name, dir_fd=descriptor, follow_symlinks=False)
                 content, problem = read(name, descriptor)
                 room -= len(content or b"")
                 if room < 0:
                     problem = f"left out; at most {most / 1e6:g} MB of a submission are taken"
+                elif self.check_owner and status.st_uid != owner:
+                    problem = f"left out; it belongs to the account {_account(status.st_uid)}"
                 if problem:
                     self.log.warning("%s: %s.", Path(here, name), problem)
                 else:
                     (folder / name).write_bytes(content)
+                    latest = max(latest, status.st_ctime)
+        return datetime.fromtimestamp(latest, UTC).replace(tzinfo=None)
+
+
+def _account(uid):
+    """What an account is called; its number where it has no name."""
+    try:
+        return pwd.getpwuid(uid).pw_name
+    except KeyError:
+        return str(uid)
 
 
 class ReleaseFeedback(ExchangeReleaseFeedback):

@@ -9,13 +9,14 @@ import os
 import re
 import stat
 from dataclasses import dataclass, field
+from datetime import UTC, datetime, timedelta
 from pathlib import Path, PurePosixPath
 
 import dateutil.parser
 
 from ..course import Course
+from ..names import UNPRINTABLE
 from ..untrusted import printable
-from .archive import UNPRINTABLE
 from .naming import is_notebook
 from .reading import LARGEST
 from .sorting import (
@@ -30,6 +31,9 @@ from .sorting import (
     sort,
 )
 
+AHEAD = timedelta(
+    days=1
+)  # zones differ by up to 14 hours, and a time may lack its own; clocks that are set by hand differ
 NOT_HANDED_IN = "{}: not handed in; 0 points."
 
 
@@ -103,7 +107,7 @@ def receipts(folder: Path) -> tuple[dict[str, str], str | None]:
     """({file name: text} of what nbgrader knows a submission in `folder` by, what is wrong with it or None)
 
     timestamp.txt tells when it was handed in, submission_secret.txt is what its feedback is found by in the exchange;
-    there is neither when the files were put there by hand.
+    there is neither when the files were put there by hand. A time to come is none: students may have written it.
     """
     texts = {name: (read(folder / name)[0] or b"").decode("utf-8", "replace").strip() for name in (TIMESTAMP, SECRET)}
     problem = None
@@ -112,11 +116,18 @@ def receipts(folder: Path) -> tuple[dict[str, str], str | None]:
     try:
         if len(texts[TIMESTAMP]) > 100:
             raise ValueError("too long to be read in reasonable time")
-        if not (texts[TIMESTAMP] and dateutil.parser.parse(texts[TIMESTAMP])):
+        if not texts[TIMESTAMP]:
             del texts[TIMESTAMP]
+        elif _is_to_come(dateutil.parser.parse(texts[TIMESTAMP])):
+            problem = f"{TIMESTAMP}: {texts.pop(TIMESTAMP)} is still to come; graded as if there were none."
     except (ValueError, OverflowError):
         problem = f"{TIMESTAMP}: {texts.pop(TIMESTAMP)[:60]!r} is no date; graded as if there were none."
     return texts, problem
+
+
+def _is_to_come(time):
+    """Whether a time, which without a zone is UTC, is later than now, however clocks and zones may differ."""
+    return (time if time.tzinfo else time.replace(tzinfo=UTC)) - AHEAD > datetime.now(UTC)
 
 
 def _paths(folder, course, problems):

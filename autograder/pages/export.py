@@ -4,8 +4,6 @@ Names, addresses and LMS ids are those of nbgrader's student table; who a studen
 submitted/. What is not known stays empty, and `remarks` says so.
 """
 
-import csv
-import io
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -14,10 +12,8 @@ from typing import NamedTuple
 from nbgrader.api import Student
 
 from ..course import ASSIGNMENT, CourseError
+from ..names import runs, table
 from . import report_data as findings
-
-# What Excel and its like take for a formula, unless it is a number or a lone dash.
-FORMULA = re.compile(r"\s*([=@＝＠]|[+\-＋－](?![\d\s]*$))")
 
 
 @dataclass(frozen=True)
@@ -103,24 +99,38 @@ def known_format(name):
 
 
 def text(course, gradebook, found, name, column=ASSIGNMENT):
-    """CSV text of a format of FORMATS; column: what the points' column is called in it, as the LMS calls the assignment.
+    """(CSV text of a format of FORMATS, {id of a student who is left out: the cells that a spreadsheet would run}).
 
-    Raises CourseError when there is no such format, and when a spreadsheet would run a cell as a formula: changed, it would
-    no longer be who it names.
+    Changed, such a cell would no longer be who it names. column: what the points' column is called in the table, as the LMS
+    calls the assignment. Raises CourseError when there is no such format, and when `column` is one of these cells.
     """
-    table = io.StringIO()
-    writer = csv.writer(table, lineterminator="\n")
     assignment, rows = gradebook.find_assignment(ASSIGNMENT), known_format(name).rows
-    cells = list(rows(course, assignment, found, column, absent(gradebook)))
-    dangerous = {cell: None for row in cells for cell in row if isinstance(cell, str) and FORMULA.match(cell)}
-    if dangerous:
+
+    def lines(found, absent):
+        return list(rows(course, assignment, found, column, absent))
+
+    head = lines([], [])
+    if runs(column):
         raise CourseError(
-            f"Nothing was written, because a spreadsheet would run this as a formula: {', '.join(map(repr, dangerous))}. "
-            "A name, address or LMS id is changed by `nbgrader db student import FILE.csv` (columns id,first_name,last_name,"
-            "email,lms_user_id, or some of them); a student's id by renaming the folder in submitted/ and grading again."
+            f"Nothing was written: a spreadsheet would run {column!r} as a formula; give another --column."
         )
-    writer.writerows(cells)
-    return table.getvalue()
+    each = [(total.student, lines([total], [])) for total in found]
+    each += [(student, lines([], [student])) for student in absent(gradebook)]
+    left_out = {who.id: cells for who, own in each if (cells := [cell for row in own for cell in row if runs(cell)])}
+    kept = [row for who, own in each if who.id not in left_out for row in own[len(head) :]]
+    return table([*head, *kept]), left_out
+
+
+def told(left_out):
+    """Lines about who is not in the table, as `text` gives them, and what to do."""
+    for student, cells in left_out.items():
+        yield f"{student!r}: left out; a spreadsheet would run this as a formula: {', '.join(map(repr, cells))}."
+    if left_out:
+        yield (
+            "To have them in the table, too: a name, address or LMS id is changed by `nbgrader db student import FILE.csv` "
+            "(columns id,first_name,last_name,email,lms_user_id, or some of them); a student's id by renaming the folder in "
+            "submitted/ and grading again."
+        )
 
 
 def remarks(found, name, absent=()):

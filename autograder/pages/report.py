@@ -4,7 +4,6 @@ Everything is read back from the autograded notebooks and the gradebook, so it i
 """
 
 import csv
-import io
 import os
 from collections import Counter, defaultdict
 from dataclasses import astuple, fields
@@ -17,6 +16,7 @@ from ..course import ASSIGNMENT
 from ..files import replace
 from ..grading.judge import Row
 from ..grading.records import missing
+from ..names import table
 from ..untrusted import printable
 from . import examples
 from . import report_data as findings
@@ -96,11 +96,8 @@ def _write_verdicts(course, works, graded):
     path = course.reports / "verdicts.csv"
     if graded and path.exists() and path.stat().st_mtime < graded:
         path.replace(course.reports / "before.csv")
-    table = io.StringIO()
-    writer = csv.writer(table, lineterminator="\n")
-    writer.writerow(COLUMNS)
-    writer.writerows((student, *astuple(row)) for student, work in works.items() for row in work.rows)
-    replace(path, table.getvalue())
+    rows = ((student, *astuple(row)) for student, work in works.items() for row in work.rows)
+    replace(path, table([COLUMNS, *rows]))
     if graded:
         os.utime(path, (graded, graded))
 

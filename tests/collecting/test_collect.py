@@ -1,8 +1,10 @@
 """What `collect` does with what is in submitted/ already, with people, and with archives that mean no good."""
 
 import os
+import shutil
 import stat
 import zipfile
+from itertools import product
 from zoneinfo import ZoneInfo
 
 import downloads
@@ -12,7 +14,7 @@ from nbgrader.api import Gradebook
 from test_systems import accounted, state, write_list
 
 from autograder.collecting.collect import collect
-from autograder.collecting.people import folder_name
+from autograder.collecting.people import Unsure, folder_name
 from autograder.collecting.told import table
 from autograder.course import CourseError
 from autograder.intake.submission import receipts
@@ -284,14 +286,30 @@ def test_folders_that_would_be_one_stop_the_second(course, submitted, work, tmp_
 @pytest.mark.parametrize(
     "text, name",
     [
-        ("García-Núñez, Ana", "García-Núñez_Ana"), ("../../etc", "etc"), ("=1+1", "1+1"), ("-x", "x"), (".hidden", "hidden"),
-        ("a/b", "a_b"), ("a\nb", "a_b"), ("a[1]*", "a_1__"), ("ana@example.org", "ana@example.org"), ("...", ""),
+        ("García-Núñez, Ana", "García-Núñez_Ana"), ("- Suharto", "Suharto"), (". Suharto", "Suharto"),
+        ("a/b", "a_b"), ("a[1]*", "a_1__"), ("ana@example.org", "ana@example.org"),
         ("x" * 300, "x" * 128),
         ("O'Brien", "O'Brien"), ("山田 太郎", "山田_太郎"),
     ],
 )  # fmt: skip
 def test_a_students_folder_is_safe(text, name):
     assert folder_name(text) == name
+
+
+@pytest.mark.parametrize("text", ["=cmd", "-rf", "--force", "+1", "@x", "../../etc", ".hidden", "..."])
+def test_what_is_no_students_name_is_refused_and_not_made_into_anothers(course, submitted, work, tmp_path, text):
+    with pytest.raises(Unsure, match="no folder can be called"):
+        folder_name(text)
+    for name, put in product((text.replace("/", ""), text.replace("/", "") + "\nrf"), (unpacked, packed)):
+        files = {f"{who}/1_rotation.ipynb": work(who)["1_rotation.ipynb"] for who in (name, "rf", "cmd")}
+        shutil.rmtree(course.root / "submitted", ignore_errors=True)
+        outcome = collect(course, [put(tmp_path / "class", files)], system="plain")
+        assert submitted() == {who: work(who, "1_rotation") for who in ("rf", "cmd")}
+        (reason,) = reasons(outcome)
+        assert (
+            "its name has a line end in it" in reason.why if "\n" in name else "no folder can be called" in reason.why
+        )
+        (tmp_path / "class").rename(tmp_path / f"{put.__name__} {len(name)}")
 
 
 @pytest.mark.parametrize("listed", [False, True])

@@ -6,6 +6,7 @@ the course's own nbgrader_config.py. On a hub nbgrader knows students by their l
 
 import multiprocessing
 import os
+import pwd
 import stat
 import subprocess
 import sys
@@ -14,13 +15,16 @@ import nbformat
 import pytest
 from nbgrader.api import Gradebook
 from nbgrader.apps import NbGraderApp
+from nbgrader.coursedir import CourseDirectory
 from support import points, run, scores
 
 from autograder.course import ASSIGNMENT
 from autograder.demo import STUDENTS, Student
+from autograder.intake import exchange
 from autograder.released import Released
 
 ONE, TWO = "1_rotation", "2_homogeneous_transforms"
+EARLY, EARLIER, TO_COME = (f"{year}-11-20 10:00:00.000000 UTC" for year in (2020, 2019, 2222))
 
 
 def command(here, environment, log, arguments):
@@ -46,6 +50,7 @@ class Hub:
         system.mkdir()
         (system / "nbgrader_config.py").write_text(
             f'c = get_config()\nc.Exchange.root = "{self.exchange}"\nc.CourseDirectory.course_id = "transforms"\n'
+            "c.ExchangeCollect.check_owner = False\n"  # everybody here is who runs the tests
         )
         self.environment = {**os.environ, "JUPYTER_CONFIG_PATH": str(system)}
 
@@ -103,7 +108,9 @@ def test_from_release_to_feedback_and_once_more(hub, sandboxed):
     handed_out = {path.relative_to(out).as_posix(): path.read_bytes() for path in out.rglob("*") if path.is_file()}
     assert handed_out == course.release_contents()
     assert all(path.stat().st_mode & stat.S_IROTH for path in out.rglob("*"))
-    assert stat.S_IMODE((hub.exchange / "transforms" / "inbound").stat().st_mode) & 0o777 == 0o733  # nobody looks in
+    inbound = (hub.exchange / "transforms" / "inbound").stat().st_mode
+    assert stat.S_IMODE(inbound) & 0o1777 == 0o1733  # nobody looks in, or takes out what is another's
+    assert stat.S_IMODE(hub.exchange.stat().st_mode) == 0o1777
 
     assert f"transforms {ASSIGNMENT}" in hub.student("alice", "list")
     for name in ("alice", "bob"):
@@ -176,7 +183,7 @@ def test_from_release_to_feedback_and_once_more(hub, sandboxed):
 
 
 def test_links_in_the_exchange_bring_nothing_of_the_instructors_and_stop_nobody(hub, solved):
-    course, sent = hub.course, "2026-11-20 10:00:00.000000 UTC"
+    course, sent = hub.course, EARLY
     inbound = hub.exchange / "transforms" / "inbound"
     for name in ("alice", "mallory", "zoe"):
         folder = inbound / f"{name}+{ASSIGNMENT}+{sent}+random"
@@ -200,9 +207,126 @@ def test_links_in_the_exchange_bring_nothing_of_the_instructors_and_stop_nobody(
     assert not [path for path in taken.rglob("*") if path.is_symlink()]
 
 
+@pytest.fixture
+def put(hub, solved):
+    """put(folder's name, notebook, owner's number, timestamp): a submission as `nbgrader submit` leaves it; where it lies."""
+
+    def submission(name, notebook=ONE, owner=None, timestamp=None):
+        folder = hub.exchange / "transforms" / "inbound" / name
+        folder.mkdir()
+        (folder / f"{notebook}.ipynb").write_bytes(solved[notebook].read_bytes())
+        if timestamp is not None:
+            (folder / "timestamp.txt").write_text(timestamp)
+        for path in (*folder.iterdir(), folder) if owner is not None else ():
+            os.chown(path, owner, -1)
+        return folder
+
+    return submission
+
+
+@pytest.fixture
+def accounts():
+    """Two students' accounts of this machine, {name: number}; made for the test, and removed again."""
+    if os.getuid() != 0:
+        pytest.skip("needs root, to make accounts")
+    names = [f"grader-{who}-{os.getpid()}" for who in ("alice", "mallory")]
+    for name in names:
+        subprocess.run(["useradd", "--no-create-home", "--no-user-group", name], check=True)
+    try:
+        yield {name: pwd.getpwnam(name).pw_uid for name in names}
+    finally:
+        for name in names:
+            subprocess.run(["userdel", name], check=True)
+
+
+OWNERS = "--ExchangeCollect.check_owner=True"
+
+
+def test_who_owns_a_folder_is_who_handed_it_in(hub, put, accounts):
+    """With accounts of this machine: nobody hands in as somebody else, not even with a later date, nor adds to it."""
+    (alice, hers), (mallory, his) = accounts.items()
+    mine = put(f"{alice}+{ASSIGNMENT}+{EARLIER}+random", ONE, hers, EARLIER)
+    forged = put(f"{alice}+{ASSIGNMENT}+{EARLY}+random", TWO, his, EARLY)
+    (mine / "added.txt").write_text("by another one")
+    os.chown(mine / "added.txt", his, -1)
+    (forged.parent / f"{alice}+{ASSIGNMENT}+{EARLY}+link").symlink_to(mine)
+    put(f"{mallory}+{ASSIGNMENT}+{EARLY}+random", ONE, his, EARLY)
+    said = hub.instructor("collect", ASSIGNMENT, OWNERS)
+    assert f"{forged.name}': passed over; it belongs to the account {mallory}, and who owns a folder is who" in said
+    assert "+link': passed over; it is no folder." in said
+    assert f"added.txt: left out; it belongs to the account {mallory}." in said
+    assert hub.course.students() == [alice, mallory]
+    taken = hub.course.submitted(alice)
+    assert sorted(path.name for path in taken.iterdir()) == [f"{ONE}.ipynb", "timestamp.txt"]
+    assert (taken / "timestamp.txt").read_text() == EARLIER
+
+
+def test_without_accounts_of_their_own_students_are_who_the_folder_says(hub, put):
+    me = pwd.getpwuid(os.getuid()).pw_name
+    for name in (me, "mallory"):
+        put(f"{name}+{ASSIGNMENT}+{EARLY}+random")
+    said = hub.instructor("collect", ASSIGNMENT, OWNERS)
+    assert "check_owner = False in nbgrader_config.py" in said and hub.course.students() == [me]
+    hub.instructor("collect", ASSIGNMENT)
+    assert hub.course.students() == sorted([me, "mallory"])
+
+
+ODD_FOLDERS = {
+    f"=cmd+{ASSIGNMENT}+{EARLY}+random": "begins with no - + = @ or dot",
+    f"-rf+{ASSIGNMENT}+{EARLY}+random": "begins with no - + = @ or dot",
+    f"a\nb+{ASSIGNMENT}+{EARLY}+random": "has no line ends",
+    f"alice+{ASSIGNMENT}+{TO_COME}+random": "2222-11-20 10:00 UTC, is still to come: it has to be handed in again",
+    f"alice+{ASSIGNMENT}+yesterday+random": "its name is not one that `nbgrader submit` gives",
+    f"alice+{ASSIGNMENT}+": "its name is not one that `nbgrader submit` gives",
+    f"+{ASSIGNMENT}+{EARLY}+random": "a student's name is not empty",
+}
+
+
+def test_what_is_passed_over_is_said_and_stands_in_nobodys_way(hub, put):
+    for name in ODD_FOLDERS:
+        put(name, TWO)
+    put(f"alice+{ASSIGNMENT}+{EARLIER}+random", ONE)
+    said = hub.instructor("collect", ASSIGNMENT)
+    for name, why in ODD_FOLDERS.items():
+        assert any(f"{name!r}"[1:] in line and why in line for line in said.splitlines()), name
+    assert hub.course.students() == ["alice"] == sorted(path.name for path in (hub.course.root / "submitted").iterdir())
+    assert [path.stem for path in hub.course.submitted("alice").glob("*.ipynb")] == [ONE]
+
+
+@pytest.mark.parametrize("written", [None, EARLIER, TO_COME, "/etc/passwd", "x" * 5000])
+def test_the_time_of_a_submission_is_that_by_which_it_was_collected(hub, put, written):
+    """What a student writes into the file, or that there is none, changes nothing; the day it was written here is said."""
+    put(f"alice+{ASSIGNMENT}+{EARLY}+random", timestamp=written)
+    said = hub.instructor("collect", ASSIGNMENT)
+    assert (hub.course.submitted("alice") / "timestamp.txt").read_text() == EARLY
+    assert "Written later than they say, times in UTC: alice (says 2020-11-20 10:00, written 2" in said
+
+
+def test_work_that_was_just_handed_in_is_not_said_to_be_dated_back(hub):
+    hub.student("alice", "fetch_assignment", ASSIGNMENT)
+    hub.student("alice", "submit", ASSIGNMENT)
+    assert "Written later" not in hub.instructor("collect", ASSIGNMENT) and hub.course.students() == ["alice"]
+
+
+def test_a_sticky_folder_of_somebody_else_is_said(tmp_path, monkeypatch, caplog):
+    """`release_assignment` cannot change an exchange that another account has made; it says who has to."""
+    tmp_path.chmod(0o777)
+    (tmp_path / "transforms" / "inbound").mkdir(parents=True)
+
+    def refuse(*_):
+        raise PermissionError
+
+    monkeypatch.setattr(exchange.ExchangeReleaseAssignment, "init_dest", lambda _: None)
+    monkeypatch.setattr(exchange.os, "chmod", refuse)
+    released = exchange.ReleaseAssignment(coursedir=CourseDirectory(course_id="transforms"))
+    released.root = str(tmp_path)
+    released.init_dest()
+    assert f"{tmp_path}: who owns it has to run `chmod +t {tmp_path}`." in caplog.text
+
+
 def test_who_did_not_submit_through_the_exchange_does_not_keep_others_from_their_feedback(hub):
     sent, files = (
-        "2026-11-20 10:00:00.000000 UTC",
+        EARLY,
         {"alice": b"a" * 128, "by [hand]": None, "mallory": b"", "zoe": b"\xff"},
     )
     for name, secret in files.items():

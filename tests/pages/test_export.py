@@ -50,9 +50,15 @@ def put(writer, student, points, answered=True):
 
 def table(course, name, column="transforms"):
     """The rows of a format, read back."""
+    return exported(course, name, column)[0]
+
+
+def exported(course, name, column="transforms"):
+    """(the rows of a format, read back; who was left out)"""
     with Writer(course) as writer:
         found = export.totals(writer.gradebook)
-        return list(csv.reader(io.StringIO(export.text(course, writer.gradebook, found, name, column))))
+        text, left_out = export.text(course, writer.gradebook, found, name, column)
+        return list(csv.reader(io.StringIO(text))), left_out
 
 
 def remarks(course, name):
@@ -134,30 +140,45 @@ def test_what_is_not_final_and_who_is_not_known_is_said(graded):
     assert "written answers of 2 of 3 students" in remarks(graded, "plain")[0]
 
 
-FORMULAS = ['=HYPERLINK("http://example.org")', "+1+cmd|' /C calc'!A0", "-2+3", "@SUM(1)", " =1+1"]
-NO_FORMULAS = ["-", "+49 170 1234567", "O'Neil", "Müller-Lüdenscheidt", "-5"]
+FORMULA = '=HYPERLINK("http://example.org")'  # tests/test_names.py has all kinds
 
 
-def test_what_a_spreadsheet_would_run_is_refused(graded):
+@pytest.mark.parametrize("field", ["last_name", "email", "lms_user_id"])
+def test_who_has_a_cell_that_a_spreadsheet_would_run_is_left_out_and_the_class_is_not(graded, field):
     with Writer(graded) as writer:
-        for field in ("last_name", "email"):
-            for name in FORMULAS:
-                writer.gradebook.update_or_create_student("ada", **{**PEOPLE["ada"], field: name})
-                found = export.totals(writer.gradebook)
-                with pytest.raises(CourseError, match="a spreadsheet would run this as a formula"):
-                    export.text(graded, writer.gradebook, found, "moodle")
-                assert export.text(graded, writer.gradebook, found, "plain")  # it is not in there
-        for name in NO_FORMULAS:
-            writer.gradebook.update_or_create_student("ada", **{**PEOPLE["ada"], "last_name": name})
-            assert name in export.text(graded, writer.gradebook, export.totals(writer.gradebook), "moodle")
+        writer.gradebook.update_or_create_student("ada", **{**PEOPLE["ada"], field: FORMULA})
+    rows, left_out = exported(graded, "moodle")
+    assert left_out == {"ada": [FORMULA]}
+    assert [row[2] for row in rows] == ["Username", "joerg", "zoë"]
+    assert exported(graded, "plain")[1] == {}  # it is not in there
+    with Writer(graded) as writer:
+        writer.gradebook.update_or_create_student("absent", last_name=FORMULA)
+    assert exported(graded, "plain")[1] == {}
 
 
-def test_the_id_of_a_student_is_never_changed_but_refused(graded):
+def test_the_id_of_a_student_is_never_changed(graded):
     with Writer(graded) as writer:
         put(writer, "=1+1", 2.0)
+        writer.gradebook.update_or_create_student("@absent")
     for name in export.FORMATS:
-        with pytest.raises(CourseError, match="=1\\+1.*renaming the folder in submitted/"):
-            table(graded, name)
+        rows, left_out = exported(graded, name)
+        assert left_out == {"=1+1": ["=1+1"]} | ({"@absent": ["@absent"]} if name == "plain" else {})
+        assert len(rows) == len(PEOPLE) + {"plain": 2, "canvas": 2, "moodle": 1}[name]
+
+
+def test_a_column_that_a_spreadsheet_would_run_is_refused(graded):
+    with pytest.raises(CourseError, match="give another --column"):
+        table(graded, "canvas", "=1+1")
+
+
+def test_the_command_says_who_was_left_out(graded, slow):
+    with Writer(graded) as writer:
+        writer.gradebook.update_or_create_student("ada", last_name=FORMULA)
+    code, said = run(graded, "export", "--format", "canvas", "--output", "points.csv")
+    assert code == 1 and said.startswith("points.csv is written.")
+    assert f"'ada': left out; a spreadsheet would run this as a formula: '{FORMULA}, Ada'." in said
+    assert "nbgrader db student import FILE.csv" in said
+    assert "joerg" in (graded.root / "points.csv").read_text()
 
 
 def test_the_command(graded, slow):

@@ -264,6 +264,18 @@ def test_grades_csv_is_what_nbgrader_exports(course, nbgrader):
     assert {row["student_id"] for row in csv.DictReader(ours.splitlines())} == set(course.students())
 
 
+def test_nothing_in_grades_csv_is_run_and_every_name_stays_in_its_cell(course):
+    nasty = {"first_name": "=1+1", "last_name": 'Müller, Jr. "Jojo', "email": "@SUM(1)\n=2"}
+    student = course.students()[0]
+    with Writer(course) as writer:
+        writer.gradebook.update_or_create_student(student, **nasty)
+        writer.export(course.reports / "grades.csv")
+    with open(course.reports / "grades.csv", newline="", encoding="utf-8") as file:
+        rows = {row["student_id"]: row for row in csv.DictReader(file)}
+    assert rows.keys() == set(course.students())
+    assert [rows[student][field] for field in nasty] == ["'=1+1", 'Müller, Jr. "Jojo', "'@SUM(1) =2"]
+
+
 def test_records_of_an_older_grader_are_reported_without_words(course):
     for path in course.root.glob("autograded/*/transforms/*.ipynb"):
         notebook = nbformat.read(path, as_version=4)

@@ -75,7 +75,7 @@ LOOKS = st.lists(
 @given(looks=LOOKS)
 def test_what_a_processor_has_done_is_not_forgotten(tmp_path_factory, looks):
     """However processes come and go, it never becomes less, nor less than what was seen of them at once."""
-    looker = watch.Watch(1, 1, Limits())
+    looker = watch.Watch(1, Limits())
     most, before = {}, 0
     for number, look in enumerate(looks):
         found = []
