@@ -6,8 +6,8 @@
 import hashlib
 import json
 import os
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict
+from functools import partial
 from urllib.parse import quote
 
 from traitlets.config import Config
@@ -18,9 +18,10 @@ from ..bridge import nbgrader_api
 from ..course import ASSIGNMENT, CourseError
 from ..files import replace
 from ..grading import digests
+from ..grading.failure import Failure
 from ..grading.marks import CellGrade, NotebookGrades
 from ..grading.records import recorded, recorded_alone, verdicts
-from ..grading.workers import end_with_parent
+from ..grading.workers import Processes
 from ..intake.submission import NOT_HANDED_IN
 from ..released import without_points
 from .markdown import heading
@@ -70,8 +71,18 @@ def generate(course, grades, jobs):
 
     Yields (student, None or what went wrong) as they are done.
     """
-    with ProcessPoolExecutor(jobs, initializer=end_with_parent) as pool:
-        yield from zip(grades, pool.map(_one, [course] * len(grades), grades, grades.values()))
+    too_much = {}
+    for (student, told), found in Processes(partial(_pages, course), jobs).each(grades.items()):
+        if isinstance(found, Failure) and found.of_content:
+            too_much[student] = told
+        else:
+            yield student, found.words if isinstance(found, Failure) else found
+    for (student, _), found in Processes(partial(_pages, course, bare=True), jobs).each(too_much.items()):
+        yield student, f"no feedback: {found.words}" if isinstance(found, Failure) else found
+
+
+def _pages(course, one, bare=False):
+    return _one(course, *one, bare)
 
 
 def _one(course, student, grades, bare=False):
