@@ -149,10 +149,16 @@ class _Run:
                 self.skip[position] = stopped(cell.source, "its function's process ended")
                 return False
         asked = {name: taken for name, taken in snapshots.items() if taken.meets()}
-        # All public cases before the first hidden one: what they are answered with is shown.
-        answers = {name: public_example.answers(name, self.public.get(name), taken) for name, taken in asked.items()}
+        answers = {}
+        for name, taken in asked.items():  # all public cases before the first hidden one: what they give is shown
+            answers[name] = public_example.answers(name, self.public.get(name), taken)
+            if taken.gone:
+                self._judge(name, taken, answers[name])
+                return False  # what it has started may still be there
         for name, taken in asked.items():
             self._judge(name, taken, answers[name])
+            if taken.gone:
+                return False
         return True
 
     def _run_cell(self, process, cell, position, at_once):
@@ -168,10 +174,13 @@ class _Run:
     def _judge(self, name, process, answers=()):
         """Reach the verdict on an exercise; by the `answers` to public cases alone where one of those calls had no end."""
         solution = _solution(self.intake, self.released, name)
-        replies = process.calls(name, self.keys[name]["cases"])
+        cases = self.keys[name]["cases"]
+        replies = process.calls(name, [*cases, cases[0]])
         if answers and not answers[-1].reply.finished:
             replies = iter([answers[-1].reply])
-        verdict = examine(name, self.keys[name], lambda *_: next(replies), Telling(answers, solution))
+        verdict = examine(
+            name, self.keys[name], lambda *_: next(replies), lambda: next(replies), Telling(answers, solution)
+        )
         if not verdict.right:
             verdict = explained(verdict, self.failures.values(), solution)
             if example := public_example.find(verdict, self.public.get(name), answers):

@@ -6,7 +6,6 @@ import json
 import re
 import shutil
 from collections import Counter
-from concurrent.futures import Future
 
 import nbformat
 import pytest
@@ -49,20 +48,14 @@ def added():
 
 
 class Here:
-    """Grades in this process, where a test's own status is known."""
+    """Works in this process, where a test's own status is known."""
 
-    ahead = 1
+    def __init__(self, function, jobs):
+        self.function = function
 
-    def __init__(self, run, jobs):
-        self.run = run
-
-    def submit(self, submission):
-        done = Future()
-        done.set_result(grade.grade_submission(submission, self.run))
-        return done
-
-    def close(self):
-        """There is nothing to close."""
+    def each(self, items):
+        for item in items:
+            yield item, self.function(item)
 
 
 @pytest.fixture(scope="module")

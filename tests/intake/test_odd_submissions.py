@@ -10,7 +10,7 @@ import pytest
 from support import marks, points, run, scores, statuses
 
 from autograder.bridge.gradebook import Writer
-from autograder.grading import workers
+from autograder.grading import classroom
 from autograder.grading.classroom import grade_class
 from autograder.grading.grade import grade_submission, grading_run
 from autograder.intake.submission import submission_of
@@ -135,14 +135,14 @@ def test_marks_that_were_not_written_are_written_next_time(course, hand_in, solv
 def test_a_worker_that_dies_costs_only_its_own_submission(course, hand_in, solved, sandboxed, monkeypatch):
     for student in ("ann", "bad", "cid", "dan"):
         hand_in(course, student, {ONE: solved[ONE]})
-    grade = workers.grade_submission
+    grade = classroom.grade_submission
 
     def killed(submission, against):
         if submission.student == "bad":
             os.kill(os.getpid(), 9)
         return grade(submission, against)
 
-    monkeypatch.setattr(workers, "grade_submission", killed)
+    monkeypatch.setattr(classroom, "grade_submission", killed)
     with Writer(course) as writer:
         found = {
             student: (graded, problem)
@@ -150,7 +150,9 @@ def test_a_worker_that_dies_costs_only_its_own_submission(course, hand_in, solve
                 course, course.students(), grading_run(course, 1), writer, jobs=2
             )
         }
-    assert "is there enough memory?" in found["bad"][1]
+    bad, problem = found["bad"]
+    assert problem is None and "is there enough memory?" in bad.problems[0]
+    assert {row.status for row in bad.rows if row.notebook == ONE} == {"killed"} and not any(r.score for r in bad.rows)
     for student in ("ann", "cid", "dan"):
         assert found[student][1] is None
         assert sum(row.score for row in found[student][0].rows) == points(ONE)

@@ -182,10 +182,14 @@ def test_an_odd_answer_is_escaped(classroom):
 def test_an_answer_that_no_file_can_hold_is_no_example():
     exercise = public_example.public_cases(json.dumps({"exercises": {"chain": key_of("chain")}}))["chain"]
     wrong = examine("chain", exercise, lambda args, kwargs: Reply("returned", None, [args, kwargs]))
-    given = [exercise["cases"][0]["args"], {}]
-    assert public_example.find(wrong, exercise, lambda args, kwargs: Reply("returned", [float("nan")], given)) is None
-    assert public_example.find(wrong, exercise, lambda args, kwargs: Reply("timeout")) is None
-    found = public_example.find(wrong, exercise, lambda args, kwargs: Reply("raised", error="ValueError: <b>no</b>"))
+    case = exercise["cases"][0]
+
+    def found_of(reply):
+        return public_example.find(wrong, exercise, [public_example.Answer(exercise["returns"], case, reply)])
+
+    assert found_of(Reply("returned", [float("nan")], [case["args"], {}])) is None
+    assert found_of(Reply("timeout")) is None
+    found = found_of(Reply("raised", error="ValueError: <b>no</b>"))
     assert "ValueError: &lt;b&gt;no&lt;/b&gt;" in examples.of_answer("chain", found)
 
 

@@ -114,9 +114,9 @@ ACTIONS = """
 import gc, signal
 executor = signal.getsignal(signal.SIGINT).__self__
 actions = next(found for method in gc.get_referrers(executor) for found in gc.get_referrers(method)
-               if isinstance(found, dict) and 'run_cell' in found and 'call' in found)
+               if isinstance(found, dict) and 'run_cell' in found and 'prepare' in found)
 """
-RIGHT = "{'outcome': 'returned', 'value': True, 'arguments': [[], {}], 'score': 7, 'credit': 1.0, 'right': True}"
+RIGHT = "{'outcome': 'returned', 'value': True, 'changed': False, 'score': 7, 'credit': 1.0, 'right': True}"
 
 CHECKS = [
     cheat(
@@ -195,7 +195,7 @@ CHECKS = [
     ),
     cheat(
         "the executor replaced",
-        ACTIONS + f"executor.call = actions['call'] = lambda *a: {RIGHT}\nprint('executor found')",
+        ACTIONS + f"executor._call = lambda *a: {RIGHT}\nprint('executor found')",
         "executor found",
     ),
     cheat(
@@ -376,7 +376,7 @@ LIES = [
 deep = []
 for _ in range(800):
     deep = [deep]
-actions['call'] = lambda *a: {'outcome': 'returned', 'value': deep, 'arguments': [{}] * 9}""",
+executor._call = lambda *a: {'outcome': 'returned', 'value': deep, 'changed': False}""",
         status="killed",
     ),
     harm(

@@ -39,6 +39,11 @@ GENERAL = {
         "Your function gives the same answer whatever it is given.",
         "Compute the answer from the arguments; the check calls it with many different ones.",
     ),
+    "mutable-default": (
+        "Your function gives another answer when it is called again with the same arguments.",
+        "It remembers earlier calls. Does it change a default argument, such as `pose=Pose()`, or something made outside of it? "
+        "Make a new object in each call.",
+    ),
     "not-normalised": (
         "Your quaternion has the right direction, but its length is not 1.",
         "An orientation is a unit quaternion: divide by its length.",
@@ -83,6 +88,9 @@ class Diagnosis(NamedTuple):
     ids: tuple = ()
     says: str = ""
     hint: str = ""
+
+
+REMEMBERS = Diagnosis(("mutable-default",), *GENERAL["mutable-default"])
 
 
 def diagnose(exercise, replies, outcomes, tell=str):

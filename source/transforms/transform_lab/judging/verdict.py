@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 from . import codec
 from .answers import parts_of
-from .diagnosis import constant, diagnose
+from .diagnosis import REMEMBERS, constant, diagnose
 from .kinds import KINDS
 from .plain import Plain, PlainCase, PlainExercise
 from .reading import Unfit
@@ -85,12 +85,17 @@ class Verdict:
 
 
 def examine(
-    name: str, exercise: PlainExercise, call: Callable[[list, dict], Reply], tell: Callable[[str], str] = str
+    name: str,
+    exercise: PlainExercise,
+    call: Callable[[list, dict], Reply],
+    again: Callable[[], Reply] | None = None,
+    tell: Callable[[str], str] = str,
 ) -> Verdict:
     """The Verdict on the function that `call(args, kwargs) -> Reply` calls, over all cases of `exercise`.
 
     It depends on the answers alone, not on the order of the cases.
 
+    again: calls the function with the first case once more: whether it remembers earlier calls is told by it
     tell: from what is wrong with a reply, in words that the student's process may have chosen, to what may be said of it
     """
     returns, answered = exercise["returns"], []
@@ -99,7 +104,8 @@ def examine(
         if not reply.finished:
             return _unfinished(name, reply, case)
         answered.append((case, reply, compare(returns, case, reply)))
-    if not all(outcome.right for _, _, outcome in answered):
+    remembers = again is not None and not all(map(_is_right, answered)) and _differ(returns, answered[0], again())
+    if not all(map(_is_right, answered)):
         families = list(exercise["weights"])
         answered.sort(key=lambda one: (families.index(one[0]["family"]), _simple_first(one[0])))
     cases, replies, outcomes = map(list, zip(*answered))
@@ -115,15 +121,37 @@ def examine(
     )
     if all(outcome.right for outcome in outcomes):
         return verdict
+    if remembers:
+        verdict.parts = {part: times if times == len(cases) else 0 for part, times in verdict.parts.items()}
+        verdict.credit = sum(exercise["credit"].get(part, 0.0) for part, times in verdict.parts.items() if times)
     if constant(replies):
         verdict.credit = 0.0
     verdict.misconceptions, verdict.says, verdict.hint = diagnose({**exercise, "cases": cases}, replies, outcomes, tell)
+    if remembers:
+        verdict.misconceptions, verdict.says, verdict.hint = REMEMBERS
     for case, reply, outcome in answered:
         if not outcome.answered:  # there is none when calls only changed their arguments
             verdict.failing, verdict.error = case, reply.error
             verdict.answer = codec.decode(reply.value) if reply.outcome == "returned" else None
             break
     return verdict
+
+
+def _is_right(answered):
+    _, _, outcome = answered
+    return outcome.right
+
+
+def _differ(returns, answered, reply):
+    """Whether the same arguments gave another answer: a function that is wrong may still be so in one way alone."""
+    case, before, outcome = answered
+    if before.outcome != reply.outcome:
+        return True
+    now = compare(returns, case, reply)
+    if outcome.got is None or now.got is None:
+        return (outcome.got is None) != (now.got is None)
+    parts = KINDS[returns].parts
+    return not all(part.agree(now.got[name], outcome.got[name]) for name, part in parts.items())
 
 
 def _simple_first(case: PlainCase) -> tuple[int, str]:

@@ -1,0 +1,102 @@
+"""A verdict depends on the answers alone: not on the order of the calls, and not on what was called before."""
+
+import os
+import pickle
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+import pytest
+from solutions.right import NAMES, RIGHT
+from solutions.wrong import WRONG
+from transform_lab.judging.calling import call
+from transform_lab.judging.verdict import Reply, examine
+
+from autograder.exercises import EXERCISES, key
+from autograder.proving.adequacy import quiet
+
+SEED = 11
+EVERY = {
+    **{f"right: {name}: {label}": (name, function) for (name, function), label in zip(RIGHT, NAMES)},
+    **{f"wrong: {name}: {function.__name__}": (name, function) for name, _, function in WRONG},
+}
+
+
+@pytest.fixture(scope="module")
+def keys():
+    return {name: key(exercise, SEED) for name, exercise in EXERCISES.items()}
+
+
+def judged(name, exercise, function):
+    """The Verdict as a notebook's `check` and the grader reach it, but for the answer that it shows."""
+    first = exercise["cases"][0]
+    verdict = examine(
+        name,
+        exercise,
+        lambda args, kwargs: function(args, kwargs),
+        lambda: function(first["args"], first["kwargs"]),
+    )
+    remembers = "mutable-default" in verdict.misconceptions
+    return replace(
+        verdict, answer=None if remembers else repr(verdict.answer), failing=None if remembers else verdict.failing
+    )
+
+
+def some(thorough, step):
+    return list(EVERY.values())[:: 1 if thorough else step]
+
+
+def test_in_any_order(keys, thorough):
+    rng, different = np.random.default_rng(SEED), []
+    with quiet():
+        for name, function in some(thorough, 10):
+            cases, called = keys[name]["cases"], partial(call, function)
+            first = judged(name, keys[name], called)
+            for _ in range(3 if thorough else 1):
+                shuffled = {**keys[name], "cases": [cases[number] for number in rng.permutation(len(cases))]}
+                if (other := judged(name, shuffled, called)) != first:
+                    different.append((name, function, first, other))
+    assert not different
+
+
+def test_in_a_fresh_process_each(keys, thorough):
+    """But for what remembers earlier calls, which is what is wrong with it."""
+    different, remember = [], []
+    with quiet():
+        for name, function in some(thorough, 40):
+            together = judged(name, keys[name], partial(call, function))
+            if "mutable-default" in together.misconceptions:
+                remember.append((function, together))
+            elif (apart := judged(name, keys[name], partial(in_a_process, function))) != together:
+                different.append((name, function, together, apart))
+    assert not different
+    assert not thorough or {function.__name__ for function, _ in remember} == {"ttp_accumulates", "chain_remembers"}
+
+
+def in_a_process(function, args, kwargs):
+    """The Reply of a function which nobody has called before."""
+    read, write = os.pipe()
+    if (child := os.fork()) == 0:
+        with open(write, "wb") as file:
+            pickle.dump(call(function, args, kwargs), file)
+            file.flush()
+            os._exit(0)
+    os.close(write)
+    with open(read, "rb") as file:
+        reply = pickle.load(file)
+    os.waitpid(child, 0)
+    return reply
+
+
+def test_what_the_verdict_would_be_if_order_counted():
+    """The test sees it: a function that answers by the number of its calls has another verdict in another order."""
+    exercise = key(EXERCISES["is_rotation"], SEED)
+    verdicts = []
+    for cases in (exercise["cases"], exercise["cases"][::-1]):
+        answers = iter([case["expected"] for case in exercise["cases"]])
+        verdicts.append(
+            examine(
+                "is_rotation", {**exercise, "cases": cases}, lambda a, k, n=answers: Reply("returned", next(n), [a, k])
+            )
+        )
+    assert verdicts[0].right and not verdicts[1].right
