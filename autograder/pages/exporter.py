@@ -12,7 +12,6 @@ from nbconvert.exporters import HTMLExporter, TemplateExporter
 from nbconvert.filters import Highlight2HTML
 from nbconvert.filters.widgetsdatatypefilter import WidgetsDataTypeFilter
 from nbgrader.preprocessors import GetGrades
-from traitlets import Bool
 
 from ..grading.judge import opinion
 from ..grading.records import RECORD, verdicts
@@ -43,7 +42,7 @@ class Feedback(HTMLExporter):
     There is a page whatever the student's notebook holds: where one cannot be made of it, the verdicts alone.
     """
 
-    bare = Bool(False, help="Show the verdicts, and nothing that the student wrote or displayed.").tag(config=True)
+    bare = False  # whether to leave out from the start what the student wrote and displayed
 
     def __init__(self, **kwargs):
         super().__init__(**kwargs)
@@ -108,3 +107,12 @@ class Feedback(HTMLExporter):
                 continue
             position = len(cell.outputs) - 1  # the last one says the points
             cell.outputs.insert(position, {"output_type": "display_data", "data": shown, "metadata": {}})
+
+
+class BareFeedback(Feedback):
+    """As Feedback, of the verdicts alone: for a notebook of which a page takes too much time or memory.
+
+    A class of its own, because nbgrader takes settings of "Feedback" for old ones of its command.
+    """
+
+    bare = True

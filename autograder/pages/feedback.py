@@ -120,7 +120,8 @@ def _whole(course, student, grades, changed=None):
 
 def _verdicts(course, student, grades):
     """Pages without what the student wrote and displayed."""
-    return _whole(course, student, grades, Config(Feedback={"bare": True}))
+    bare = Config(GenerateFeedback={"exporter_class": "autograder.pages.exporter.BareFeedback"})
+    return _whole(course, student, grades, bare)
 
 
 def _least(course, student, grades):

@@ -1,6 +1,7 @@
 """The class report, as an instructor reads it: what it says of a class with a bit of everything, and how it is made."""
 
 import csv
+import json
 import os
 import shutil
 from collections import Counter
@@ -367,3 +368,27 @@ def test_verdicts_keep_their_date(course):
     before = os.stat(path).st_mtime
     make(course)
     assert os.stat(path).st_mtime == before
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [lambda rows: rows[0].update(score="much"), lambda rows: rows[0].update(max_score=None), lambda rows: rows.clear()],
+)
+def test_a_damaged_record_costs_its_student_alone(course, damage):
+    path = course.autograded("lena") / "3_chaining.ipynb"
+    notebook = json.loads(path.read_text(encoding="utf-8"))
+    damage(notebook["metadata"]["transform_lab"]["rows"])
+    path.write_text(json.dumps(notebook), encoding="utf-8")
+    with Writer(course) as writer:
+        rows = report.write(course, writer)
+    assert set(rows) == set(course.students()) and sum(row.score for row in rows["ben"]) > 0
+    assert "lena" in (course.reports / "index.html").read_text(encoding="utf-8")
+
+
+def test_a_name_that_no_file_can_hold_or_that_turns_words_around_costs_nothing(course):
+    for name in (b"\xff", "\u202eevil".encode()):
+        os.makedirs(os.path.join(os.fsencode(course.root), b"submitted", name, b"transforms"))
+    with Writer(course) as writer:
+        report.write(course, writer)
+    page = (course.reports / "index.html").read_text(encoding="utf-8")
+    assert "Handed in, but not graded:" in page and "?" in page and "evil" in page and "\u202e" not in page

@@ -3,13 +3,16 @@
 import base64
 import io
 import json
+import shutil
 
 import nbformat
 import pytest
 from PIL import Image
 from support import ASKED, asked, jupyter_server, run
 
-from autograder.course import ASSIGNMENT
+from autograder.bridge.gradebook import Writer
+from autograder.course import ASSIGNMENT, Course
+from autograder.pages import exporter, feedback
 from autograder.pages.bounded import BARE
 
 ONE = "1_rotation"
@@ -66,15 +69,11 @@ def around_each_check(notebook):
 @pytest.fixture(scope="module")
 def course_of_eve(released, hand_in, sandboxed, tmp_path_factory):
     """A course in which a student hands in what looks like, covers and moves verdicts, in the notebook and in an error."""
-    import shutil
-
-    from autograder.course import Course
-
     course = Course(shutil.copytree(released.root, tmp_path_factory.mktemp("eve") / "course"))
     notebook = nbformat.read(course.source / f"{ONE}.ipynb", as_version=4)
     for cell in notebook.cells:
         if cell.metadata.get("nbgrader", {}).get("grade_id") == "is_rotation-solution":
-            cell.source = "def is_rotation(R):\n    raise ValueError('\\u202e' + 'A' + '\\u0301' * 200 + '✓ right')\n"
+            cell.source = "def is_rotation(R):\n    raise ValueError('\\u202e' + 'A' + '\\u0301' * 20 + '✓ right')\n"
     hand_in(course, "eve", {ONE: around_each_check(notebook)})
     code, said = run(course, "grade")
     assert code == 0, said
@@ -151,18 +150,39 @@ def test_the_formgrader(course_of_eve, browser):
         check(tab)
 
 
-def test_a_bare_page(course_of_eve, browser):
-    from autograder.bridge.gradebook import Writer
-    from autograder.pages import feedback
-
+@pytest.fixture
+def pages(course_of_eve):
+    """(course, grades of the student, the folder of her pages), which are made anew by the tests that follow."""
     with Writer(course_of_eve) as writer:
-        grades = writer.grades()["eve"]
-    page = course_of_eve.feedback("eve") / f"{ONE}.html"
-    whole = page.read_bytes(), (page.parent / "index.html").read_bytes()
-    assert "took more time or memory" in feedback._one(course_of_eve, "eve", grades, bare=True)
-    text = page.read_text(encoding="utf-8")
+        return course_of_eve, writer.grades()["eve"], course_of_eve.feedback("eve")
+
+
+def test_a_page_of_the_verdicts_alone(pages):
+    course, grades, folder = pages
+    assert "took more time or memory" in feedback._one(course, "eve", grades, bare=True)
+    text = (folder / f"{ONE}.html").read_text(encoding="utf-8")
     assert BARE.strip("*") in text and "4 of 4 points" not in text and "is_rotation: not right yet" in text
     assert text.count('class="said') == len(ASKED[ONE].points)
-    assert feedback.is_complete(course_of_eve, "eve", grades)
-    assert feedback._one(course_of_eve, "eve", grades) is None
-    assert (page.read_bytes(), (page.parent / "index.html").read_bytes()) == whole
+    assert feedback.is_complete(course, "eve", grades)
+    assert feedback._one(course, "eve", grades) is None
+    assert "4 of 4 points" in (folder / f"{ONE}.html").read_text(encoding="utf-8")
+
+
+def test_what_no_page_can_be_made_of_costs_no_verdict(pages, monkeypatch):
+    course, grades, folder = pages
+    monkeypatch.setattr(exporter.Feedback, "_whole", lambda *_, **__: 1 / 0)
+    said = feedback._one(course, "eve", grades)
+    assert said.startswith(f"{ONE}: no page could be made of the notebook") and "division by zero" in said
+    text = (folder / f"{ONE}.html").read_text(encoding="utf-8")
+    assert BARE.strip("*") in text and "is_rotation: not right yet" in text
+
+
+@pytest.mark.parametrize("bare", [False, True])
+def test_where_nothing_works_a_page_has_the_points(pages, monkeypatch, bare):
+    course, grades, folder = pages
+    monkeypatch.setattr(exporter.Feedback, "from_notebook_node", lambda *_, **__: 1 / 0)
+    assert feedback._one(course, "eve", grades, bare).startswith("the pages hold the points alone: division by zero")
+    for name in (ONE, "index"):
+        text = (folder / f"{name}.html").read_text(encoding="utf-8")
+        assert "<code>is_rotation</code>: 0 of 2" in text and "<code>rotation_about_z</code>: 2 of 2" in text
+    assert not feedback.is_complete(course, "eve", grades)  # the next run tries again
