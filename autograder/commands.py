@@ -10,6 +10,7 @@ from contextlib import nullcontext
 from pathlib import Path
 
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
@@ -330,7 +331,7 @@ def grade(options):
         errors.print(f"{name if name.isprintable() else repr(name)}: not graded: {what_to_do}.", markup=False)
     with Cluster(options.scheduler) if options.scheduler else nullcontext() as cluster:
         if exposed := unprotected(cluster.client) if cluster else []:
-            errors.print(OPEN_TO_THE_NETWORK.format(", ".join(exposed)), highlight=False)
+            errors.print(OPEN_TO_THE_NETWORK.format(escape(", ".join(exposed))))
         failed = _grade(
             here,
             [student for student in chosen if student in students],
