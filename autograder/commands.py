@@ -10,6 +10,7 @@ from contextlib import nullcontext
 from pathlib import Path
 
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
@@ -23,6 +24,11 @@ errors = Console(stderr=True, highlight=False, soft_wrap=True)
 UNPROTECTED = (
     "[bold red]NOT PROTECTED:[/] students' code runs as you, without a sandbox: it can read and change your files, the "
     "gradebook and other students' work, and use the network."
+)
+
+OPEN_TO_THE_NETWORK = (
+    "[bold red]NOT PROTECTED:[/] whoever in the network reaches {} can run any code there as you, and read the course. Set up "
+    "TLS (README, “Larger classes”), or start scheduler and workers with `--host 127.0.0.1` on this machine alone."
 )
 
 COLLECT = "sort what an LMS gives as all submissions into submitted/, and say who came from what"
@@ -310,6 +316,7 @@ def grade(options):
     here = course()
     ForkServer.serving(here.package)  # loads while the rest is loaded here
     from .bridge import gradebook  # noqa: F401 (takes as long as the fork server's start)
+    from .grading.network import unprotected
     from .grading.workers import Cluster
 
     students = here.students()
@@ -323,6 +330,8 @@ def grade(options):
     for name, what_to_do in astray.items():
         errors.print(f"{name if name.isprintable() else repr(name)}: not graded: {what_to_do}.", markup=False)
     with Cluster(options.scheduler) if options.scheduler else nullcontext() as cluster:
+        if exposed := unprotected(cluster.client) if cluster else []:
+            errors.print(OPEN_TO_THE_NETWORK.format(escape(", ".join(exposed))))
         failed = _grade(
             here,
             [student for student in chosen if student in students],
@@ -351,14 +360,14 @@ def _protection(here, unsafe, cluster=None):
 
 
 def _grade(here, students, protected, seed=None, jobs=os.cpu_count(), force=False, with_feedback=True, cluster=None):
-    """Grade, record, write feedback and report; returns the students who could not be graded."""
+    """Grade, record, write feedback and report; returns the students of whom something could not be done."""
     from .bridge.gradebook import Writer
     from .grading.classroom import grade_class
     from .grading.grade import grading_run, new_seed
     from .pages import report
 
     seed = new_seed() if seed is None else seed
-    failed, fresh, counts = [], [], Counter()
+    failed, without_feedback, fresh, counts = [], [], [], Counter()
     with here.one_grader_at_a_time(_busy), Writer(here) as writer:
         writer.can_record()
         against = grading_run(here, seed, isolated=protected)
@@ -381,7 +390,7 @@ def _grade(here, students, protected, seed=None, jobs=os.cpu_count(), force=Fals
         if with_feedback:
             grades = writer.grades()
             wanted = {name: grades[name] for name in students if name not in failed and name in grades}
-            _write_feedback(here, wanted, jobs)
+            without_feedback = _write_feedback(here, wanted, jobs)
         found = report.write(here, writer)
     _show_class(found, students)
     unchanged = len(students) - len(fresh) - len(failed)
@@ -394,12 +403,14 @@ def _grade(here, students, protected, seed=None, jobs=os.cpu_count(), force=Fals
         ("gradebook", here.gradebook),
     ):
         console.print(f"  {what:14} {where.relative_to(here.root)}", markup=False)
-    return failed
+    return failed + without_feedback
 
 
 def _write_feedback(here, grades, jobs):
+    """Make the pages that are missing or out of date; returns the students who could not get theirs."""
     from .pages import feedback
 
+    failed = []
     wanted = {student: told for student, told in grades.items() if not feedback.is_complete(here, student, told)}
     with _progress() as progress:
         bar = progress.add_task("feedback", total=len(wanted), counts="")
@@ -407,6 +418,9 @@ def _write_feedback(here, grades, jobs):
             progress.advance(bar)
             if problem:
                 progress.console.print(f"{student}: {problem}", markup=False)
+            if not (here.feedback(student) / feedback.SUMMARY).is_file():
+                failed.append(student)
+    return failed
 
 
 def _busy():

@@ -2,16 +2,20 @@
 
 import json
 import os
+import shlex
 import shutil
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import nbformat
 import pytest
 from support import ASKED, path_without, points, points_by_hand, run, scores, statuses, verdicts
 
+from autograder import doctor
 from autograder.bridge.gradebook import Writer
+from autograder.bridge.nbgrader_api import exchange
 from autograder.course import Course
 from autograder.exercises import EXERCISES
 
@@ -251,6 +255,94 @@ def test_doctor(course, sandboxed, without_bubblewrap):
     assert "ok    bubblewrap works" in said
     code, said = run(course, "doctor", path=without_bubblewrap)
     assert code == 1 and "LOOK  No sandbox" in said
+
+
+def test_a_folder_that_is_called_as_no_student_is_refused_and_the_others_are_graded(course, hand_in, sandboxed):
+    for name in ("=cmd", "-rf", "a\nb", "ann"):
+        hand_in(course, name, {})
+    code, said = run(course, "grade", "--no-feedback")
+    assert code == 1 and "1 graded" in said
+    for name, why in (("=cmd", "begins with no -"), ("-rf", "begins with no -"), (r"'a\nb'", "has no line ends")):
+        (line,) = [
+            line for line in said.splitlines() if line.startswith(f"{name}: not graded: its folder in submitted/")
+        ]
+        assert why in line
+    assert {row["student"] for row in verdicts(course)} == {"ann"}
+
+
+@pytest.fixture
+def small(monkeypatch):
+    """A course with a gradebook and a submission, in a folder that others may pass through; there is no exchange."""
+    with tempfile.TemporaryDirectory() as folder:
+        os.chmod(folder, 0o711)
+        root = Path(folder, "course")
+        for inside in ("source/transforms", "submitted", "exchange/transforms/inbound"):
+            (root / inside).mkdir(parents=True)
+        (root / "gradebook.db").write_text("")
+        monkeypatch.setattr(doctor.sandbox, "problem", lambda: "none here")
+        monkeypatch.setattr(doctor, "exchange", lambda _: (root / "nowhere", "transforms"))
+        yield Course(root)
+
+
+def of_files(course):
+    """The lines of `doctor` about files, {line: whether that is as it should be}."""
+    return {line: good for good, line in doctor.examine(course) if "sandbox" not in line and "Python" not in line}
+
+
+@pytest.mark.parametrize(
+    "folder, gradebook, others",
+    [
+        (0o755, 0o644, "source, submitted, gradebook.db"),
+        (0o711, 0o644, "source, submitted, gradebook.db"),
+        (0o755, 0o640, "source, submitted"),
+        (0o755, 0o602, "source, submitted, gradebook.db"),
+        (0o750, 0o644, ""),
+        (0o700, 0o666, ""),
+    ],
+)
+def test_doctor_says_what_others_can_read_and_how_to_mend_it(small, folder, gradebook, others):
+    small.root.chmod(folder)
+    small.gradebook.chmod(gradebook)
+    if os.getuid() == 0:  # others can, indeed
+        reads = subprocess.run(["cat", small.gradebook], user=65534, group=65534, extra_groups=[], capture_output=True)
+        assert (reads.returncode == 0) is (bool(others) and bool(gradebook & 0o004))
+    ((line, good),) = of_files(small).items()
+    assert good is not bool(others)
+    if others:
+        assert f"can read or change {others}: `chmod o-rwx {small.root}` keeps them out." in line
+        subprocess.run(shlex.split(line.split("`")[1]), check=True)
+        assert all(of_files(small).values())
+
+
+def test_doctor_looks_at_what_lies_elsewhere(small):
+    """A course that is closed, of which a folder lies in another one."""
+    elsewhere = small.root.parent / "elsewhere"
+    elsewhere.mkdir()
+    (small.root / "submitted").rmdir()
+    (small.root / "submitted").symlink_to(elsewhere)
+    small.root.chmod(0o700)
+    ((line, _),) = of_files(small).items()
+    assert f"can read or change submitted: `chmod o-rwx {elsewhere}` keeps them out." in line
+
+
+def test_doctor_looks_at_the_exchange(small, monkeypatch):
+    small.root.chmod(0o700)
+    folders = [small.root / "exchange", small.root / "exchange" / "transforms" / "inbound"]
+    for folder in folders:
+        folder.chmod(0o733)
+    monkeypatch.setattr(doctor, "exchange", lambda _: (folders[0], "transforms"))
+    loose = [line for line, good in of_files(small).items() if not good]
+    assert all("students can remove each other's work" in line for line in loose)
+    for line in loose:
+        subprocess.run(shlex.split(line.split("`")[1]), check=True)
+    assert [folder.stat().st_mode & 0o7777 for folder in folders] == [0o1733] * 2
+    assert all(of_files(small).values())
+
+
+def test_the_exchange_is_that_of_nbgraders_configuration(course, tmp_path, monkeypatch):
+    (tmp_path / "nbgrader_config.py").write_text(f'c = get_config()\nc.Exchange.root = "{tmp_path}/shared"\n')
+    monkeypatch.setenv("JUPYTER_CONFIG_PATH", str(tmp_path))
+    assert exchange(course) == (tmp_path / "shared", "transforms")
 
 
 def test_release_says_what_changed(course, slow):

@@ -57,6 +57,11 @@ def opened(course):
     try:
         return Gradebook(db_url(course))
     except DatabaseError as error:
+        if "locked" in str(error):
+            raise CourseError(
+                f"Another program has held the gradebook for {PATIENCE:g} s ({error.orig}). When that has ended (a formgrader, "
+                "nbgrader's commands, a tool that looks at databases), try again."
+            ) from None
         raise CourseError(
             f"The gradebook cannot be read ({error.orig}). Put a backup in its place; or move it away, and "
             "`python3 -m autograder grade --force` makes a new one from submitted/ (without hand-given grades)."

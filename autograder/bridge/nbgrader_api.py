@@ -2,9 +2,12 @@
 
 import logging
 import sys
+from pathlib import Path
 
 from nbgrader.apps import NbGraderAPI
+from nbgrader.apps.baseapp import NbGrader
 from nbgrader.coursedir import CourseDirectory
+from nbgrader.exchange.default import Exchange
 from traitlets.config import PyFileConfigLoader
 
 from ..course import CourseError
@@ -21,6 +24,13 @@ def settings(course):
 def db_url(course):
     """Where the gradebook is, as SQLAlchemy writes it: SQLite in the course's folder, or what nbgrader_config.py sets."""
     return CourseDirectory(config=settings(course)).db_url
+
+
+def exchange(course):
+    """(the folder of nbgrader's exchange, what the course is called in it), as this machine and the course configure them."""
+    app = NbGrader()
+    app.initialize([], root=str(course.root))
+    return Path(Exchange(config=app.config, coursedir=app.coursedir).root), app.coursedir.course_id
 
 
 def call(course, command, *arguments, changed=None):

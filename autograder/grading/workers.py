@@ -173,8 +173,11 @@ class Cluster:
         from distributed import Client
         from distributed.comm import get_address_host_port
 
+        from .network import expect_tls_of_both
+
         try:
             get_address_host_port(address)  # of a text that is no address, Client would say so with a traceback
+            expect_tls_of_both(address)
             self.client = Client(address, timeout=PATIENCE, set_as_default=False)
         except (OSError, ValueError) as error:
             raise CourseError(

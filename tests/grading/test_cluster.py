@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -9,9 +10,11 @@ import sys
 import threading
 
 import pytest
-from support import marks, run, wait_for
+from distributed.utils import get_ip
+from support import ROOT, lacking, marks, run, wait_for
 
 from autograder.course import Course
+from autograder.grading.network import is_open
 
 pytestmark = pytest.mark.usefixtures("sandboxed")
 
@@ -54,6 +57,7 @@ def test_a_class_is_graded_on_a_cluster_and_a_worker_that_is_killed_costs_nothin
     assert killed.is_set()
     assert code == 0, said
     assert "9 graded" in said
+    assert "NOT PROTECTED" not in said  # it listens to this machine alone
     assert marks(course) == marks(alone)
     assert len({mark for mark in marks(course).values() if isinstance(mark, tuple)}) > 3
 
@@ -79,3 +83,71 @@ def test_a_scheduler_without_workers_is_said(course, hand_in, solved):
     finally:
         scheduler.terminate()
         scheduler.wait(30)
+
+
+@pytest.fixture
+def started(course):
+    """started(program, …): `dask scheduler …` or `dask worker …` in the course's folder, until the end of the test."""
+    running = []
+
+    def start(program, *options):
+        command = [sys.executable, "-m", f"distributed.cli.dask_{program}", "--no-dashboard", *options]
+        running.append(subprocess.Popen(command, cwd=course.root, stderr=subprocess.DEVNULL))
+
+    yield start
+    for process in reversed(running):
+        process.terminate()
+        process.wait(60)
+
+
+def test_a_class_is_graded_over_tls_as_the_readme_sets_it_up(course, hand_in, solved, tmp_path, monkeypatch, started):
+    """With certificates made by the README's own commands; who has none gets no answer."""
+    shutil.which("openssl") or lacking("needs openssl, to make certificates")
+    (commands,) = re.findall(r"```\n(mkdir -p ~/.config/dask.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+    monkeypatch.setenv("HOME", str(tmp_path))
+    subprocess.run(["bash", "-euc", commands], check=True, capture_output=True)
+    key = tmp_path / ".config/dask/key.pem"
+    assert key.stat().st_mode & 0o777 == 0o600
+    hand_in(course, "ann", solved)
+
+    told = course.root / "scheduler.json"
+    started("scheduler", "--port", "0", "--no-show", "--scheduler-file", told)
+    wait_for(told.exists)
+    address = json.loads(told.read_text())["address"]
+    assert address.startswith("tls://")
+    started("worker", address, "--nthreads", "1")
+    wait_for(lambda: "has no workers" not in run(course, "grade", "--no-feedback", "--scheduler", address)[1])
+    code, said = run(course, "grade", "--no-feedback", "--force", "--scheduler", address)
+    assert code == 0 and "1 graded" in said and "NOT PROTECTED" not in said, said
+
+    monkeypatch.setenv("HOME", str(tmp_path / "elsewhere"))
+    for other in (address, address.replace("tls:", "tcp:")):
+        code, said = run(course, "grade", "--force", "--scheduler", other)
+        assert code == 2 and "No Dask scheduler answers" in said
+
+
+def test_a_cluster_that_others_can_reach_is_said(course, hand_in, solved, started):
+    address = f"tcp://{get_ip()}:8786"
+    if not is_open(address):
+        lacking("needs a network, in which this machine has an address")
+    hand_in(course, "ann", {})
+    told = course.root / "scheduler.json"
+    started("scheduler", "--port", "0", "--no-show", "--scheduler-file", told)
+    wait_for(told.exists)
+    address = json.loads(told.read_text())["address"]
+    started("worker", address, "--nthreads", "1", "--host", "127.0.0.1")
+    wait_for(lambda: "has no workers" not in run(course, "grade", "--no-feedback", "--scheduler", address)[1])
+    code, said = run(course, "grade", "--no-feedback", "--scheduler", address)
+    assert code == 0 and f"NOT PROTECTED: whoever in the network reaches {address} can run any code there" in said
+
+
+ADDRESSES = {
+    "tcp://127.0.0.1:8786": False, "tcp://[::1]:8786": False, "localhost:8786": False, "tls://192.0.2.1:8786": False,
+    "inproc://192.0.2.1/1/1": False, "tcp://192.0.2.1:8786": True, "192.0.2.1:8786": True, "tcp://[2001:db8::1]:8786": True,
+    "tcp://0.0.0.0:8786": True, "ws://192.0.2.1:8786": True, "tcp://no-such-host.invalid:8786": True,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("address", ADDRESSES)
+def test_which_addresses_others_can_use(address):
+    assert is_open(address) is ADDRESSES[address]

@@ -13,7 +13,7 @@ from autograder.bridge.gradebook import Writer
 from autograder.grading import classroom
 from autograder.grading.classroom import grade_class
 from autograder.grading.grade import grade_submission, grading_run
-from autograder.intake.submission import submission_of
+from autograder.intake.submission import receipts, submission_of
 from autograder.sandbox import Limits
 
 ONE = "1_rotation"
@@ -85,11 +85,34 @@ def test_a_timestamp_that_is_no_date_is_said(course, hand_in, solved, sandboxed)
     (course.submitted("ann") / "timestamp.txt").write_text("last tuesday-ish")
     code, said = run(course, "grade", "--no-feedback")
     assert code == 0 and "ann: timestamp.txt: 'last tuesday-ish' is no date" in said
-    (course.submitted("ann") / "timestamp.txt").write_text("2026-11-20 10:00:00 UTC")
+    (course.submitted("ann") / "timestamp.txt").write_text("2020-11-20 10:00:00 UTC")
     code, said = run(course, "grade", "--no-feedback")
     assert code == 0 and "1 graded" in said
     with Writer(course) as writer:
-        assert str(writer.gradebook.find_submission("transforms", "ann").timestamp) == "2026-11-20 10:00:00"
+        assert str(writer.gradebook.find_submission("transforms", "ann").timestamp) == "2020-11-20 10:00:00"
+
+
+TIMES = {
+    "2020-11-20 10:00:00.000000 UTC": None,
+    "2020-11-20T10:00:00+14:00": None,
+    "": None,
+    "2222-11-20 10:00:00.000000 UTC": "is still to come",
+    "9999-12-31 23:59:59 -1200": "is still to come",
+    "0001-01-01 00:00:00": "is no date",
+    "0001-01-01 00:00:00+14:00": "is no date",
+    "99999-01-01": "is no date",
+    "1" * 101: "is no date",
+}
+
+
+@pytest.mark.parametrize("said", TIMES, ids=lambda text: text[:30])
+def test_a_timestamp_is_believed_when_it_can_be(tmp_path, said):
+    (tmp_path / "timestamp.txt").write_text(said)
+    known, problem = receipts(tmp_path)
+    if TIMES[said]:
+        assert not known and f"{TIMES[said]}; graded as if there were none." in problem
+    else:
+        assert problem is None and known == ({"timestamp.txt": said} if said else {})
 
 
 def test_files_in_the_wrong_folder_are_said(course, hand_in, solved, sandboxed):

@@ -582,6 +582,25 @@ def test_nothing_is_rendered_while_grading():
     assert (result.returncode, result.stderr, result.stdout.strip()) == (0, "", "")
 
 
+WITHOUT_SERVER = """
+import socket, sys
+def refuse(*_): raise AssertionError("a port")
+socket.socket.bind = socket.socket.listen = refuse
+import numpy as np
+import transform_lab as lab
+v = lab.Viewer(); v.add_point('p', (1, 2, 3))
+assert "srcdoc" in v._repr_mimebundle_()['text/html'] and len(v.html()) > 200_000
+print('meshcat' in sys.modules, 'pyngrok' in sys.modules)
+"""
+
+
+def test_a_scene_needs_no_server_and_no_tunnel():
+    """meshcat brings both; its geometry and its script are all that is used of it."""
+    environment = {"PYTHONPATH": os.pathsep.join(sys.path)}
+    result = subprocess.run([sys.executable, "-c", WITHOUT_SERVER], env=environment, capture_output=True, text=True)
+    assert (result.returncode, result.stdout.strip()) == (0, "True False"), result.stderr
+
+
 @pytest.mark.parametrize(
     "points", [np.random.default_rng(1).normal(size=(40, 3)), [[0, 0, 0], [0.1, 0, 0]], [[1, 2, 3]]], ids=len
 )
