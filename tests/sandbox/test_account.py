@@ -17,7 +17,16 @@ from support import MADE_AT_RUN_TIME, ROOT, wait_for
 GRADER = """
 import json, os, pathlib, sys
 sys.path.insert(0, {root!r})
-from autograder.sandbox import Ended, Limits, Sandbox, account
+from autograder.sandbox import Ended, Limits, Sandbox
+
+def threads(number):
+    for path in pathlib.Path("/proc").glob("[0-9]*/task/[0-9]*/status"):
+        try:
+            status = path.read_text(errors="replace")
+        except OSError:
+            continue  # it has ended
+        if f"\nUid:\t{{number}}\t" in status and "\nState:\tZ" not in status:
+            yield path
 
 limits = Limits(cell=15, call=2, grace=1, cpu=2, memory=700_000_000, processes=30, files=2_000)
 package = pathlib.Path({root!r}, "source/transforms/transform_lab")
@@ -30,7 +39,7 @@ with Sandbox(package, {{"helper.py": b"answer = 42"}}, limits, "user") as sandbo
                 outputs = notebook.run_cell(cell).outputs
             except Ended as ended:
                 outputs = [{{"text": str(ended)}}]
-        left = len(account.processes(number)) + home.exists()
+        left = len(list(threads(number))) + home.exists()
         texts = [o.get("text") or o.get("ename") or o["data"]["text/plain"] for o in outputs]
         print(json.dumps([" ".join(texts).strip(), left]), flush=True)
 """
@@ -90,6 +99,16 @@ ATTACKS = {
         """,
         "'left behind'",
     ),
+    "a daemon whose first thread has ended": (
+        """
+        import ctypes, platform, threading
+        if os.fork() == 0:
+            threading.Thread(target=time.sleep, args=(600,)).start()
+            ctypes.CDLL(None).syscall(60 if platform.machine() == 'x86_64' else 93, 0)
+        time.sleep(1); 'left behind'
+        """,
+        "'left behind'",
+    ),
     "daemons that stop who comes to end them": (
         """
         for _ in range(5):
@@ -108,6 +127,10 @@ ATTACKS = {
                 time.sleep(600)
         time.sleep(600)
         """,
+        "it used more than 0.7 GB of memory",
+    ),
+    "shared memory that may be unmapped": (
+        "import mmap\nheld = mmap.mmap(os.open('/dev/zero', os.O_RDWR), 4096)\ntime.sleep(600)",
         "it used more than 0.7 GB of memory",
     ),
     "processor time": (

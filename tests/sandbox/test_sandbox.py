@@ -215,24 +215,27 @@ def test_processor_time_is_limited(sandboxed):
     assert killed(Limits(cpu=3.0), cell) == "it used more than 3 s of processor time"
 
 
-@pytest.mark.parametrize("heir", ["its parent", "nobody"])
-def test_processor_time_of_children_whom_nobody_waits_for_is_limited(sandboxed, heir):
-    """Of each of them there is little, and the kernel does not add it to their parent's."""
-    cell = (
-        "import os, signal, time\nsignal.signal(signal.SIGCHLD, signal.SIG_IGN)\nwhile True:\n    if os.fork() == 0:\n"
-        f"        if {heir == 'nobody'} and os.fork(): os._exit(0)\n"
-        "        while time.process_time() < {amount}: pass\n        os._exit(0)\n    time.sleep({amount})"
-    )
-    for amount in (0.004, 0.1):
-        reason = killed(Limits(cell=60, cpu=2.0), cell.replace("{amount}", str(amount)))
-        assert reason == "it used more than 2 s of processor time"
+def test_processor_time_of_children_whom_nobody_waits_for_is_limited(sandboxed):
+    """The kernel does not add it to their parent's, and each ends before it has used much."""
+    cell = """\
+import os, signal, time
+signal.signal(signal.SIGCHLD, signal.SIG_IGN)
+while True:
+    if os.fork() == 0:
+        while time.process_time() < 0.4: pass
+        os._exit(0)
+    try:
+        os.wait()
+    except ChildProcessError:  # it has ended
+        continue"""
+    assert killed(Limits(cell=60, cpu=2.0), cell) == "it used more than 2 s of processor time"
 
 
 def test_sockets_of_many_processes_are_limited(sandboxed):
     """What lies in them is in no process's memory; so each of them counts as if it were full."""
-    pairs = "x = [socket.socketpair() for _ in range(28)]; time.sleep(60)"
+    pairs = "x = [socket.socketpair() for _ in range(24)]; time.sleep(60)"
     cell = "import socket\n" + FORKED.format(count=38, work=pairs, after="time.sleep(60)")
-    assert killed(Limits(cell=60, memory=700_000_000), cell) == "it used more than 0.7 GB of memory"
+    assert killed(Limits(cell=30, memory=600_000_000), cell) == "it used more than 0.6 GB of memory"
 
 
 def test_timers_are_limited(sandbox):
