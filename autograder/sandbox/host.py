@@ -313,11 +313,17 @@ class Snapshot(Asked):
             told = self.channel.answer_to(self.nonce, None, time.monotonic() + self.limits.grace)
             self.pid = CREDENTIALS.unpack(said[0][2])[0] if LINUX else int(told["process"])
             self.handle = os.pidfd_open(self.pid) if LINUX else None
-            return True
+            return not self._hung_up()
         except (Closed, Late, Garbled, OSError, LookupError, TypeError, ValueError, struct.error):
             return False
         finally:
             self.allowance.use(time.monotonic() - start)
+
+    def _hung_up(self):
+        try:
+            return self.channel.connection.recv(1, socket.MSG_PEEK | socket.MSG_DONTWAIT) == b""
+        except BlockingIOError:
+            return False
 
 
 class NotebookProcess(Asked):

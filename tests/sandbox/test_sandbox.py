@@ -1,5 +1,6 @@
 """The real sandbox: what a notebook's process can do, and what it cannot reach."""
 
+import json
 import os
 from pathlib import Path
 
@@ -9,13 +10,15 @@ from support import ROOT, key_of
 from transform_lab.judging.verdict import examine
 
 from autograder.sandbox import Ended, Limits, Sandbox
+from autograder.sandbox.channel import MOST_RECEIVED
+from autograder.sandbox.host import MOST_OUTPUTS, MOST_REPLIED
 
 PACKAGE = ROOT / "source/transforms/transform_lab"
 QUICK = Limits(cell=4.0, call=2.0, grace=1.0)  # for loops to end soon; ample for the rest on a busy machine
 HANDED_IN = {"helper.py": b"answer = 42\n", "data/points.csv": b"1,2,3\n"}
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def sandbox(sandboxed):
     with Sandbox(PACKAGE, HANDED_IN, QUICK) as box:
         yield box
@@ -548,10 +551,88 @@ def test_forged_answers_are_passed_over(sandbox):
 def test_a_notebook_has_a_budget_of_time(sandbox):
     with Sandbox(PACKAGE, limits=Limits(cell=60.0, notebook=2.0, grace=1.0)) as box:
         with box.notebook() as notebook:
-            assert notebook.run_cell("import time; time.sleep(50)").outputs[-1]["ename"] == "Interrupted"
-            assert notebook.exhausted
+            while not notebook.exhausted:
+                assert notebook.run_cell("import time; time.sleep(50)").outputs[-1]["ename"] == "Interrupted"
             with pytest.raises(Ended):
                 notebook.run_cell("1")
+
+
+EXECUTOR = "import signal; executor = signal.getsignal(signal.SIGINT).__self__"
+
+
+def test_outputs_are_counted_outside_whatever_the_notebook_says(sandbox):
+    """Inside, the bound can be taken away; then the process is ended, and its cells' outputs together stay small."""
+    kept = 0
+    with sandbox.notebook() as notebook:
+        notebook.run_cell(f"{EXECUTOR}; executor.outputs.left = 10**12")
+        with pytest.raises(Ended, match="what the grader's own code never sends"):
+            for _ in range(20):
+                kept += len(json.dumps(notebook.run_cell("print('x' * 900_000)").outputs))
+        assert 900_000 < kept <= MOST_RECEIVED
+        assert notebook.gone
+    with sandbox.notebook() as notebook:
+        notebook.run_cell(f"{EXECUTOR}; executor.outputs.left = 10**12")
+        number = [len(notebook.run_cell("for n in range(900): display(n)").outputs) for _ in range(4)]
+    assert sum(number) == MOST_OUTPUTS
+
+
+@pytest.mark.parametrize("field", ["arguments", "value", "error", "printed", "another"])
+def test_replies_are_counted_in_sum_and_no_argument_is_kept(sandbox, field):
+    forged = {"outcome": "returned", "value": 1, "changed": False, field: "y" * 150_000}
+    cases = [{"args": [number], "kwargs": {}} for number in range(20)]
+    with sandbox.notebook() as notebook:
+        notebook.run_cell(f"{EXECUTOR}; executor._call = lambda *a: {forged}\ndef f(x): pass")
+        snapshot = notebook.snapshot()
+        assert snapshot.meets()
+        replies = list(snapshot.calls("f", cases))
+    assert replies[-1].outcome == "killed" and len(replies) <= 1 + MOST_REPLIED // 150_000
+    assert len(str(replies)) < 10_000
+
+
+def test_a_snapshot_is_as_the_process_was(sandbox):
+    with sandbox.notebook() as notebook:
+        notebook.run_cell("x = 1\ndef f(): return x")
+        before = notebook.snapshot()
+        notebook.run_cell("x = 2")
+        after = notebook.snapshot()
+        assert before.meets() and after.meets()
+        assert before.call("f", [], {}).value == 1 and after.call("f", [], {}).value == 2
+        assert {notebook.pid, before.pid, after.pid} <= set(map(int, filter(str.isdigit, os.listdir("/proc"))))
+        assert len({notebook.pid, before.pid, after.pid}) == 3
+
+
+@pytest.mark.parametrize("trick", ["import os; os.fork = lambda: 99", "import os; os.fork = os.getpid", "1"])
+def test_a_snapshot_that_is_none_is_seen(sandbox, trick):
+    """Also when it has been ended since."""
+    with sandbox.notebook() as notebook:
+        notebook.run_cell(trick)
+        snapshot = notebook.snapshot()
+        notebook.run_cell("import os; os.kill(-1, 9)")
+        assert not snapshot.meets()
+        assert notebook.run_cell("1").outputs
+
+
+def test_a_limit_that_is_reached_again_and_again_gets_shorter(sandbox):
+    with Sandbox(PACKAGE, limits=Limits(cell=4.0, grace=1.0)) as box:
+        with box.notebook() as notebook:
+            assert notebook.allowance.patience == 1.0
+            for share in (0.5, 0.25, 0.25):
+                assert notebook.run_cell("while True: pass").outputs[-1]["ename"] == "Interrupted"
+                assert notebook.allowance.patience == share
+        with box.notebook() as notebook:
+            assert notebook.allowance.patience == 0.25, "the submission's"
+        assert box.time().calls.patience == 1.0
+
+
+def test_cells_do_not_take_the_time_of_calls(sandbox):
+    with Sandbox(PACKAGE, limits=Limits(cell=60.0, notebook=2.0, grace=1.0)) as box:
+        with box.notebook() as notebook:
+            notebook.run_cell("def f(): return 1")
+            snapshot = notebook.snapshot()
+            while not notebook.exhausted:
+                notebook.run_cell("while True: pass")
+            assert not snapshot.exhausted
+            assert snapshot.meets() and snapshot.call("f", [], {}).value == 1
 
 
 def test_without_bubblewrap_the_same_code_runs_unprotected():

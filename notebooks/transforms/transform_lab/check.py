@@ -83,8 +83,14 @@ def say_what_is_missing(result):
 
 def verdict_on(name, exercise, function):
     """The Verdict on `function` for the public cases of the exercise `name`, given as plain data."""
+    first = exercise["cases"][0]
     try:
-        return examine(name, exercise, lambda args, kwargs: call(function, args, kwargs))
+        return examine(
+            name,
+            exercise,
+            lambda args, kwargs: call(function, args, kwargs),
+            lambda: call(function, first["args"], first["kwargs"]),
+        )
     except KeyboardInterrupt:
         return Verdict(name, "timeout", says="Your function was interrupted before it was done.", hint=LOOP)
 

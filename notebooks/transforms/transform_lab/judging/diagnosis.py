@@ -39,6 +39,11 @@ GENERAL = {
         "Your function gives the same answer whatever it is given.",
         "Compute the answer from the arguments; the check calls it with many different ones.",
     ),
+    "mutable-default": (
+        "Your function gives another answer when it is called again with the same arguments.",
+        "It remembers earlier calls. Does it change a default argument, such as `pose=Pose()`, or something made outside of it? "
+        "Make a new object in each call.",
+    ),
     "not-normalised": (
         "Your quaternion has the right direction, but its length is not 1.",
         "An orientation is a unit quaternion: divide by its length.",
@@ -85,12 +90,15 @@ class Diagnosis(NamedTuple):
     hint: str = ""
 
 
-def diagnose(exercise, replies, outcomes):
-    """The Diagnosis of the answers to all cases of `exercise`; see transform_lab.judging.verdict for the three arguments.
+REMEMBERS = Diagnosis(("mutable-default",), *GENERAL["mutable-default"])
+
+
+def diagnose(exercise, replies, outcomes, tell=str):
+    """The Diagnosis of the answers to all cases of `exercise`; see transform_lab.judging.verdict for the arguments.
 
     That a call changed its arguments is said first, and hides nothing else.
     """
-    found = _explain(exercise, replies, outcomes)
+    found = _explain(exercise, replies, outcomes, tell)
     if not any(outcome.mutated for outcome in outcomes):
         return found
     says, hint = GENERAL["input-mutated"]
@@ -106,7 +114,7 @@ def constant(replies):
     )
 
 
-def _explain(exercise, replies, outcomes):
+def _explain(exercise, replies, outcomes, tell):
     if all(outcome.answered for outcome in outcomes):
         return Diagnosis()
     misconceptions = exercise["misconceptions"]
@@ -117,7 +125,7 @@ def _explain(exercise, replies, outcomes):
         return found
     problems = [outcome.problem for outcome in outcomes if outcome.problem]
     if problems:
-        return _general(problems, replies)
+        return _general(problems, replies, tell)
     if constant(replies):
         return Diagnosis(("hard-coded",), *GENERAL["hard-coded"])
     return _part_by_part(exercise, outcomes)
@@ -192,19 +200,21 @@ def open_parts_of(wrong):
     return set(wrong.get("any", ())) if isinstance(wrong, dict) else set()
 
 
-def _general(problems, replies):
+def _general(problems, replies, tell):
     """The failure that most of the calls share: an exception, or an answer that cannot be compared at all."""
     identifier, times = Counter(identifier for identifier, _ in problems).most_common(1)[0]
     what = next(what for problem, what in problems if problem == identifier)
     if not identifier:
         where = "" if times == len(replies) else f" in {times} of {len(replies)} cases"
         hint = next((advice for pattern, advice in ADVICE if re.search(pattern, what)), TRY_BY_HAND)
-        return Diagnosis((), f"Your function raised an error{where}: {what}", hint)
+        told = tell(what)
+        return Diagnosis((), f"Your function raised an error{where}{f': {told}' if told else '.'}", hint)
     says, hint = GENERAL[identifier]
     if identifier == "not-finite":
         return Diagnosis((identifier,), says, hint)
     if identifier != "returned-none":
-        return Diagnosis((identifier,), f"{says[:-1]}: {what}.", hint)
+        told = tell(what)
+        return Diagnosis((identifier,), f"{says[:-1]}: {told}." if told else says, hint)
     if any(reply.printed for reply in replies):
         return Diagnosis((identifier,), "Your function printed something, but returned None.", PRINT_IS_NOT_RETURN)
     return Diagnosis((identifier,), says, hint)

@@ -4,12 +4,13 @@ The same code serves the notebook (`check`, on the public cases of key.json) and
 called in another process), so a student and an instructor never see two opinions.
 """
 
+import json
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from . import codec
 from .answers import parts_of
-from .diagnosis import constant, diagnose
+from .diagnosis import REMEMBERS, constant, diagnose
 from .kinds import KINDS
 from .plain import Plain, PlainCase, PlainExercise
 from .reading import Unfit
@@ -27,6 +28,11 @@ class Reply:
     arguments: Plain = None  # the positional and keyword arguments after the call, as plain data: [list, dict]
     error: str = ""  # the student's own error, or why the call had to be stopped; in one line
     printed: str = ""  # the beginning of what it printed
+
+    @property
+    def finished(self) -> bool:
+        """Whether the call came to its end, with an answer or an error."""
+        return self.outcome in ("returned", "raised")
 
 
 @dataclass
@@ -78,20 +84,35 @@ class Verdict:
         return self.credit == 1.0
 
 
-def examine(name: str, exercise: PlainExercise, call: Callable[[list, dict], Reply]) -> Verdict:
-    """The Verdict on the function that `call(args, kwargs) -> Reply` calls, over all cases of `exercise`."""
-    cases, returns = exercise["cases"], exercise["returns"]
-    replies = []
-    for case in cases:
+def examine(
+    name: str,
+    exercise: PlainExercise,
+    call: Callable[[list, dict], Reply],
+    again: Callable[[], Reply] | None = None,
+    tell: Callable[[str], str] = str,
+) -> Verdict:
+    """The Verdict on the function that `call(args, kwargs) -> Reply` calls, over all cases of `exercise`.
+
+    It depends on the answers alone, not on the order of the cases.
+
+    again: calls the function with the first case once more: whether it remembers earlier calls is told by it
+    tell: from what is wrong with a reply, in words that the student's process may have chosen, to what may be said of it
+    """
+    returns, answered = exercise["returns"], []
+    for case in exercise["cases"]:
         reply = call(case["args"], case["kwargs"])
-        replies.append(reply)
-        if reply.outcome not in ("returned", "raised"):
+        if not reply.finished:
             return _unfinished(name, reply, case)
-    outcomes = [compare(returns, case, reply) for case, reply in zip(cases, replies)]
+        answered.append((case, reply, compare(returns, case, reply)))
+    remembers = again is not None and not all(map(_is_right, answered)) and _differ(returns, answered[0], again())
+    if not all(map(_is_right, answered)):
+        families = list(exercise["weights"])
+        answered.sort(key=lambda one: (families.index(one[0]["family"]), _simple_first(one[0])))
+    cases, replies, outcomes = map(list, zip(*answered))
     verdict = Verdict(
         name,
         "error" if all(reply.outcome == "raised" for reply in replies) else "graded",
-        credit=_credit(exercise, outcomes),
+        credit=_credit(exercise, cases, outcomes),
         parts={part: sum(part in outcome.parts for outcome in outcomes) for part in KINDS[returns].parts},
         cases=len(cases),
         returns=returns,
@@ -100,15 +121,43 @@ def examine(name: str, exercise: PlainExercise, call: Callable[[list, dict], Rep
     )
     if all(outcome.right for outcome in outcomes):
         return verdict
+    if remembers:
+        verdict.parts = {part: times if times == len(cases) else 0 for part, times in verdict.parts.items()}
+        verdict.credit = sum(exercise["credit"].get(part, 0.0) for part, times in verdict.parts.items() if times)
     if constant(replies):
         verdict.credit = 0.0
-    verdict.misconceptions, verdict.says, verdict.hint = diagnose(exercise, replies, outcomes)
-    for case, reply, outcome in zip(cases, replies, outcomes):
+    verdict.misconceptions, verdict.says, verdict.hint = diagnose({**exercise, "cases": cases}, replies, outcomes, tell)
+    if remembers:
+        verdict.misconceptions, verdict.says, verdict.hint = REMEMBERS
+    for case, reply, outcome in answered:
         if not outcome.answered:  # there is none when calls only changed their arguments
             verdict.failing, verdict.error = case, reply.error
             verdict.answer = codec.decode(reply.value) if reply.outcome == "returned" else None
             break
     return verdict
+
+
+def _is_right(answered):
+    _, _, outcome = answered
+    return outcome.right
+
+
+def _differ(returns, answered, reply):
+    """Whether the same arguments gave another answer: a function that is wrong may still be so in one way alone."""
+    case, before, outcome = answered
+    if before.outcome != reply.outcome:
+        return True
+    now = compare(returns, case, reply)
+    if outcome.got is None or now.got is None:
+        return (outcome.got is None) != (now.got is None)
+    parts = KINDS[returns].parts
+    return not all(part.agree(now.got[name], outcome.got[name]) for name, part in parts.items())
+
+
+def _simple_first(case: PlainCase) -> tuple[int, str]:
+    """Sorts cases of a family: what takes fewer characters to write is the better example."""
+    text = json.dumps([case["args"], case["kwargs"]])
+    return len(text), text
 
 
 def _unfinished(name: str, reply: Reply, case: PlainCase) -> Verdict:
@@ -140,12 +189,12 @@ def compare(returns: str, case: PlainCase, reply: Reply) -> Outcome:
     return Outcome(good, len(good) == len(parts), got, mutated=mutated)
 
 
-def _credit(exercise: PlainExercise, outcomes: list[Outcome]) -> float:
+def _credit(exercise: PlainExercise, cases: list[PlainCase], outcomes: list[Outcome]) -> float:
     """Each family of cases counts by its weight; within it, a part earns its share when it is right in every case."""
     if all(outcome.right for outcome in outcomes):
         return 1.0
     families: dict[str, list[Outcome]] = {}
-    for case, outcome in zip(exercise["cases"], outcomes):
+    for case, outcome in zip(cases, outcomes):
         families.setdefault(case["family"], []).append(outcome)
     earned = 0.0
     for family, members in families.items():
