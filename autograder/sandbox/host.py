@@ -320,10 +320,8 @@ class Snapshot(Asked):
             self.allowance.use(time.monotonic() - start)
 
     def _hung_up(self):
-        try:
-            return self.channel.connection.recv(1, socket.MSG_PEEK | socket.MSG_DONTWAIT) == b""
-        except BlockingIOError:
-            return False
+        connection = self.channel.connection
+        return bool(select.select([connection], [], [], 0)[0]) and connection.recv(1, socket.MSG_PEEK) == b""
 
 
 class NotebookProcess(Asked):
