@@ -69,13 +69,11 @@ def judge(
     verdicts = {name: Verdict(name, status, says=STATUSES[status].means) for name, status in intake.statuses.items()}
     if set(verdicts) != set(released.points):
         run = _Run(intake, released, keys, public, verdicts, examples)
-        time, at_once = sandbox.time(), False
-        for _ in range(MOST_RESTARTS + 1):
+        time, at_once, runs = sandbox.time(), False, 0
+        while set(verdicts) != set(released.points) and runs <= MOST_RESTARTS and _left(time) > 0:
             with sandbox.notebook(time) as process:
-                whole = run.through(process, at_once)
-            if _left(time) <= 0 or whole and set(verdicts) == set(released.points):
-                break
-            at_once = at_once or whole
+                at_once |= run.through(process, at_once)
+            runs += 1
         status = "timeout" if _left(time) <= 0 else "error"
         for name in released.points:
             verdicts.setdefault(name, Verdict(name, status, says="The notebook did not get as far as this cell."))
@@ -114,7 +112,7 @@ class _Run:
         self.failures: dict[int, FailedCell] = {}
 
     def through(self, process, at_once):
-        """Run all cells, then judge; whether it came to its end, and need not be run again without another cell.
+        """Run all cells, then judge; whether what is not judged yet is to be judged at once in another run.
 
         What the course's own notebook imports is there from the start, whatever else a student has written into the cell that
         imports it. at_once: judge where the test cells stand, in the notebook's own process, and keep no outputs; for those of
@@ -154,12 +152,22 @@ class _Run:
             answers[name] = public_example.answers(name, self.public.get(name), taken)
             if taken.gone:
                 self._judge(name, taken, answers[name])
-                return False  # what it has started may still be there
+                return self._was_ended(name)
         for name, taken in asked.items():
             self._judge(name, taken, answers[name])
             if taken.gone:
-                return False
+                return self._was_ended(name)
         return True
+
+    def _was_ended(self, name):
+        """After a snapshot was stopped, and all others with it, for what it has started may still be there: as `through`.
+
+        Whether its function has ended it, or the notebook did, shows where it is judged at once.
+        """
+        killed = self.verdicts[name].status == "killed"
+        if killed:
+            del self.verdicts[name]
+        return killed
 
     def _run_cell(self, process, cell, position, at_once):
         """Run a cell of the student's; whether it ended the notebook."""
