@@ -118,13 +118,12 @@ def _text(value):
 def _keep(kept, mime, text):
     """Put the text into `kept` under its type, as it is safe to show; a page that is too much for a parser, as text."""
     if mime in ("text/html", "text/markdown"):
-        # In Markdown, a picture would be loaded from elsewhere; a link waits to be followed.
-        source = calm(text.replace("![", "[") if mime == "text/markdown" else text)
-        cleaned = clean(source, tags=HTML_TAGS) if len(source) <= LONGEST_HTML else None
+        cleaned = clean(text, tags=HTML_TAGS) if len(text) <= LONGEST_HTML else None
         if cleaned is None:
             kept.setdefault("text/plain", terminal(text))
-        elif cleaned:
-            kept[mime] = cleaned
+        elif cleaned:  # and no comment stands in the middle of a word any more
+            # In Markdown, a picture would be loaded from elsewhere; a link waits to be followed.
+            kept[mime] = calm(cleaned.replace("![", "[") if mime == "text/markdown" else cleaned)
     elif mime in TEXT and text:
         kept[mime] = terminal(text) if mime == "text/plain" else calm(text)
     elif mime in PICTURES and text:

@@ -27,7 +27,7 @@ STACKED = re.compile(f"([{MARKS}]{{2}})[{MARKS}]+")  # what is drawn over the li
 class Bounded(Preprocessor):
     """The step before nbconvert's templates, in the formgrader: `shortened`."""
 
-    budget = Int(400_000, help="Bytes of what a student wrote and displayed that a page holds.").tag(config=True)
+    budget = Int(150_000, help="Bytes of what a student wrote and displayed that a page holds.").tag(config=True)
 
     def preprocess(self, nb, resources):
         return shortened(nb, self.budget), resources

@@ -102,6 +102,19 @@ def test_what_is_calmed(text, calmed):
     assert calm(text) == calmed == calm(calmed)
 
 
+@pytest.mark.parametrize("inside", ["", "<!-- -->", "<script></script>", "&Tab;", "&NewLine;"])
+@pytest.mark.parametrize("mime", ["text/html", "text/markdown"])
+def test_no_link_of_an_output_runs_a_script_wherever_it_is_opened(mime, inside):
+    data = safe({"output_type": "display_data", "data": {mime: f"[x](java{inside}&#115;cript:MARK) ![y](//a.b)"}})[
+        "data"
+    ]
+    assert "javascript:" not in "".join(html.unescape(data[mime]).split()).lower()
+    assert mime == "text/html" or "![" not in data[mime]
+    assert safe({"output_type": "display_data", "data": {"text/markdown": "!<!-- -->[x](//a)"}})["data"] == {
+        "text/markdown": "[x](//a)"
+    }
+
+
 def test_references_of_thousands_of_digits_and_nested_ones_are_shown():
     """The verdict on the notebook and its page are not to be lost over one."""
     digits, nested = "&#" + "1" * 5000 + ";", "&" + "amp;" * 4000 + "#106;avascript:"
