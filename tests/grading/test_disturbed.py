@@ -166,3 +166,4 @@ def test_a_class_that_was_disturbed_ends_as_one_that_was_not(released, hand_in, 
     found = outcome(class_)
     assert found.keys() == wanted.keys()
     assert not [what for what in wanted if found[what] != wanted[what]]
+    assert "0 graded, 3 unchanged" in run(class_, "grade")[1]
