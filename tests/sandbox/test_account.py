@@ -25,7 +25,7 @@ def threads(number):
             status = path.read_text(errors="replace")
         except OSError:
             continue  # it has ended
-        if f"\nUid:\t{{number}}\t" in status and "\nState:\tZ" not in status:
+        if f"Uid:\\t{{number}}\\t" in status and "State:\\tZ" not in status:
             yield path
 
 limits = Limits(cell=15, call=2, grace=1, cpu=2, memory=700_000_000, processes=30, files=2_000)
