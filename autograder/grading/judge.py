@@ -69,12 +69,13 @@ def judge(
     verdicts = {name: Verdict(name, status, says=STATUSES[status].means) for name, status in intake.statuses.items()}
     if set(verdicts) != set(released.points):
         run = _Run(intake, released, keys, public, verdicts, examples)
-        time, at_once, runs = sandbox.time(), False, 0
-        while set(verdicts) != set(released.points) and runs <= MOST_RESTARTS and _left(time) > 0:
+        time, at_once, over, runs = sandbox.time(), False, False, 0
+        while set(verdicts) != set(released.points) and runs <= MOST_RESTARTS and not over:
             with sandbox.notebook(time) as process:
                 at_once |= run.through(process, at_once)
+                over = process.over
             runs += 1
-        status = "timeout" if _left(time) <= 0 else "error"
+        status = "timeout" if over else "error"
         for name in released.points:
             verdicts.setdefault(name, Verdict(name, status, says="The notebook did not get as far as this cell."))
     for cell in intake.notebook.cells:
@@ -219,10 +220,6 @@ def _end(intake, released, verdicts, position):
         name = _exercise(cell, released)
         if name:
             verdicts.setdefault(name, Verdict(name, "error", says=says, hint="Take that call out."))
-
-
-def _left(time):
-    return min(allowance.left for allowance in time)
 
 
 def _exercise(cell, released):

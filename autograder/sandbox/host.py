@@ -393,6 +393,11 @@ class NotebookProcess(Asked):
         if self.folder:
             self.folder.cleanup()
 
+    @property
+    def over(self):
+        """Whether the notebook's time is over, for its cells or for the calls."""
+        return self.exhausted or any(snapshot.exhausted for snapshot in self.snapshots) or self.time.calls.left <= 0
+
     def prepare(self, source):
         """Run lines of the grader's own before the first cell; raises Ended as `run_cell`."""
         self._request("prepare", [source], self.limits.cell)

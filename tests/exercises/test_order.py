@@ -52,10 +52,9 @@ def test_in_any_order(keys, thorough):
         for name, function in some(thorough, 10):
             cases, called = keys[name]["cases"], partial(call, function)
             first = judged(name, keys[name], called)
-            for _ in range(3 if thorough else 1):
-                shuffled = {**keys[name], "cases": [cases[number] for number in rng.permutation(len(cases))]}
-                if (other := judged(name, shuffled, called)) != first:
-                    different.append((name, function, first, other))
+            shuffled = {**keys[name], "cases": [cases[number] for number in rng.permutation(len(cases))]}
+            if (other := judged(name, shuffled, called)) != first:
+                different.append((name, function, first, other))
     assert not different
 
 
