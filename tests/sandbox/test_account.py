@@ -104,10 +104,11 @@ ATTACKS = {
         import ctypes, platform, threading
         if os.fork() == 0:
             threading.Thread(target=time.sleep, args=(600,)).start()
+            os.closerange(3, 64)
             ctypes.CDLL(None).syscall(60 if platform.machine() == 'x86_64' else 93, 0)
-        time.sleep(1); 'left behind'
+        time.sleep(1); os._exit(0)
         """,
-        "'left behind'",
+        "its process ended all of a sudden",
     ),
     "daemons that stop who comes to end them": (
         """
