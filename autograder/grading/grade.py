@@ -7,10 +7,11 @@
 
 import os
 import secrets
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import nbformat
 from transform_lab.judging.plain import PlainExercise
@@ -65,10 +66,12 @@ class Graded:
     receipts: dict[str, str] = field(default_factory=dict)  # {file name: text}, see submission.receipts
     record: dict = field(default_factory=dict)  # of the submission, where there is no notebook that could hold it
 
-    def add(self, released: Released, intake: Intake, verdicts: dict[str, Verdict], text: str, marks: "Marks") -> None:
+    def add(
+        self, released: Released, intake: Intake, verdicts: dict[str, Verdict], written: tuple[str, "Marks"]
+    ) -> None:
         """One graded notebook."""
         self.rows += rows(released, verdicts)
-        self.notebooks[released.name], self.marks[released.name] = text, marks
+        self.notebooks[released.name], self.marks[released.name] = written
         self.problems += intake.problems
 
 
@@ -103,14 +106,7 @@ def grade_submission(submission: Submission, run: GradingRun) -> Graded:
             if content is None:
                 graded.rows += missing(released)
                 continue
-            try:
-                graded.add(released, *_graded(restore(content, released), released, run, sandbox, submission))
-            except Exception as error:
-                failure = Failure.of(error)
-                if not failure.of_content:
-                    raise
-                intake = without_work(released, "unreadable", NOT_JUDGED.format(failure.words))
-                graded.add(released, *_graded(intake, released, run, sandbox, submission))
+            graded.add(released, *judged(content, released, run, sandbox, submission, _written))
     if not graded.notebooks:
         graded.record = {"problems": graded.problems, **_grading(submission, run)}
     return graded
@@ -128,18 +124,38 @@ def not_judged(course: Course, student: str, run: GradingRun, why: str) -> Grade
         for name, released in run.released.items():
             if name in there:
                 intake = without_work(released, "killed", NOT_JUDGED.format(why))
-                graded.add(released, *_graded(intake, released, run, sandbox, empty))
+                verdicts = grade_notebook(intake, released, run, sandbox, empty)
+                graded.add(released, intake, verdicts, _written(intake))
             else:
                 graded.rows += missing(released)
     return graded
 
 
-def _graded(intake, released, run, sandbox, submission):
-    """(Intake, its Verdicts, the graded notebook as text, its Marks)"""
+def judged(
+    content: bytes,
+    released: Released,
+    run: GradingRun,
+    sandbox: Sandbox,
+    submission: Submission,
+    then: Callable[[Intake], Any] = lambda intake: None,
+) -> tuple[Intake, dict[str, Verdict], Any]:
+    """(Intake, its Verdicts, what `then` makes of it) of a file's content; of what the grader fails on, nothing is judged."""
+    try:
+        intake = restore(content, released)
+        return intake, grade_notebook(intake, released, run, sandbox, submission), then(intake)
+    except Exception as error:
+        failure = Failure.of(error)
+        if not failure.of_content:
+            raise
+    intake = without_work(released, "unreadable", NOT_JUDGED.format(failure.words))
+    return intake, grade_notebook(intake, released, run, sandbox, submission), then(intake)
+
+
+def _written(intake):
+    """A graded notebook as text, and its Marks."""
     from .marks import marks  # here, because it imports nbgrader, which takes longer than to check one student's files
 
-    verdicts = grade_notebook(intake, released, run, sandbox, submission)
-    return intake, verdicts, nbformat.v4.writes(intake.notebook) + "\n", marks(intake.notebook)
+    return nbformat.v4.writes(intake.notebook) + "\n", marks(intake.notebook)
 
 
 def _grading(submission, run):

@@ -6,10 +6,9 @@ from pathlib import Path
 from transform_lab.judging import panel
 from transform_lab.judging.verdict import Verdict
 
-from ..intake.restore import restore
 from ..intake.sorting import sort
 from ..intake.submission import Submission, read, submission_of
-from .grade import grade_notebook, grading_run, new_seed
+from .grade import grading_run, judged, new_seed
 from .judge import rows
 from .records import missing
 
@@ -39,8 +38,7 @@ def check_files(course, paths, seed=None, isolated=True):
                 says = f"There is no {name}.ipynb to grade."
                 found += [(row, Verdict(row.exercise, row.status, says=says)) for row in missing(released)]
                 continue
-            intake = restore(content, released)
-            verdicts = grade_notebook(intake, released, against, sandbox, submission)
+            intake, verdicts, _ = judged(content, released, against, sandbox, submission)
             said += intake.problems
             found += [(row, verdicts[row.exercise]) for row in rows(released, verdicts)]
     return found, refused, said
