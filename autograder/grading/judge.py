@@ -25,6 +25,7 @@ from .failed_cells import FailedCell, explained, failed, stopped
 from .telling import Telling
 
 MOST_RESTARTS = 10  # times a notebook is run again without the cell or call that brought its process down
+RESTART = 1.0  # seconds of the notebook's time that this costs besides
 
 
 @dataclass(frozen=True)
@@ -74,6 +75,7 @@ def judge(
             with sandbox.notebook(time) as process:
                 at_once |= run.through(process, at_once)
                 over = process.over
+            time.cells.use(RESTART)
             runs += 1
         status = "timeout" if over else "error"
         for name in released.points:

@@ -22,14 +22,14 @@ class Limits:
     """What a notebook may use. Seconds are of time in which it could run: waiting for a busy processor is not counted.
 
     A call or a cell that reaches its limit costs itself, and halves the limit of those that follow (see Allowance); a
-    notebook or submission that does costs its exercises from there on. These have their limit for the cells, and once more
-    for the calls.
+    notebook or submission that does costs its exercises from there on. A notebook has its limit for its cells, and once
+    more for the calls.
     """
 
     cell: float = 6.0
     call: float = 2.0
-    notebook: float = 20.0
-    submission: float = 40.0
+    notebook: float = 15.0
+    submission: float = 30.0
     grace: float = 1.0  # between the interrupt and the end of the process
     cpu: float = 60.0  # of processor time, all processes of a notebook together
     memory: int = 2_000_000_000  # bytes of address space for each process, and of memory for all of them together

@@ -130,7 +130,7 @@ class Sandbox:
         self.files = {path: base64.b64encode(content).decode() for path, content in (files or {}).items()}
 
     def __enter__(self):
-        self.whole = Time(Allowance(self.limits.submission), Allowance(self.limits.submission))
+        self.allowance = Allowance(self.limits.submission)
         return self
 
     def __exit__(self, *_):
@@ -138,7 +138,7 @@ class Sandbox:
 
     def time(self):
         """The Time of one notebook, however often it is run, out of the submission's."""
-        return Time(*(Allowance(self.limits.notebook, whole) for whole in self.whole))
+        return Time(*(Allowance(self.limits.notebook, self.allowance) for _ in Time._fields))
 
     def notebook(self, time=None):
         """A NotebookProcess in a new sandbox."""
@@ -146,7 +146,7 @@ class Sandbox:
 
 
 class Time(NamedTuple):
-    """What there is for a notebook's cells, and for the calls of its functions: none takes the others' time."""
+    """What there is for a notebook's cells, and for the calls of its functions: none takes the other's."""
 
     cells: Allowance
     calls: Allowance

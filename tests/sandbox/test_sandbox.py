@@ -622,7 +622,6 @@ def test_a_limit_that_is_reached_again_and_again_gets_shorter(sandbox):
                 assert notebook.allowance.patience == share
         with box.notebook() as notebook:
             assert notebook.allowance.patience == 0.25, "the submission's"
-        assert box.time().calls.patience == 1.0
 
 
 def test_cells_do_not_take_the_time_of_calls(sandbox):
