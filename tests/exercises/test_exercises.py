@@ -248,7 +248,7 @@ def test_keys_are_plain_data_and_follow_from_the_seed(name):
     assert json.loads(json.dumps(public, allow_nan=False)) == public
     assert key(exercise, PUBLIC_SEED) == public
     hidden = key(exercise, PUBLIC_SEED + 1)
-    assert [case["family"] for case in hidden["cases"]] == [case["family"] for case in public["cases"]]
+    assert sorted(case["family"] for case in hidden["cases"]) == sorted(case["family"] for case in public["cases"])
     if name != "hand_transform":  # it has no arguments
         shown = [case["args"] for case in public["cases"]]
         assert any(case["args"] not in shown for case in hidden["cases"])
