@@ -33,7 +33,9 @@ def restore(content: bytes, released: Released) -> Intake:
     try:
         found = cells(content)
     except Unreadable as unreadable:
-        return without_work(released, "unreadable", f"it cannot be read: {unreadable}")
+        return without_work(
+            released, "unreadable", f"it cannot be read: {unreadable}", f"could not be read:** {unreadable}"
+        )
     work = Restoration(found, released)
     work.recognise()
     work.join_halves()
@@ -47,13 +49,13 @@ def restore(content: bytes, released: Released) -> Intake:
     return intake
 
 
-def without_work(released: Released, status: str, problem: str) -> Intake:
+def without_work(released: Released, status: str, problem: str, note: str = "") -> Intake:
     """The Intake of a file of which nothing can be judged: as released, with a note on top.
 
-    status: of all exercises; problem: why, as the end of a sentence
+    status: of all exercises; problem: why, as the end of a sentence; note: how the note ends that begins "**This notebook"
     """
     intake = Intake(copy.deepcopy(released.notebook), dict.fromkeys(released.points, status))
     intake.say(released, problem)
-    note = nbformat.v4.new_markdown_cell(f"**This notebook was not judged:** {problem}.", id="note")
-    intake.notebook.cells.insert(0, note)
+    text = f"**This notebook {note or f'was not judged:** {problem}'}."
+    intake.notebook.cells.insert(0, nbformat.v4.new_markdown_cell(text, id="note"))
     return intake
