@@ -70,10 +70,10 @@ def judge(
     verdicts = {name: Verdict(name, status, says=STATUSES[status].means) for name, status in intake.statuses.items()}
     if set(verdicts) != set(released.points):
         run = _Run(intake, released, keys, public, verdicts, examples)
-        time, at_once, over, runs = sandbox.time(), False, False, 0
+        time, over, runs = sandbox.time(), False, 0
         while set(verdicts) != set(released.points) and runs <= MOST_RESTARTS and not over:
             with sandbox.notebook(time) as process:
-                at_once |= run.through(process, at_once)
+                run.through(process)
                 over = process.over
             time.cells.use(RESTART)
             runs += 1
@@ -111,16 +111,18 @@ class _Run:
     def __init__(self, intake, released, keys, public, verdicts, examples):
         self.intake, self.released, self.keys, self.public = intake, released, keys, public
         self.verdicts, self.examples = verdicts, examples  # to be filled in
+        self.aside: set[str] = set()  # exercises of which a snapshot could not be made, or was ended
         self.skip: dict[int, FailedCell] = {}  # {position: the cell that brought the process down}
         self.failures: dict[int, FailedCell] = {}
 
-    def through(self, process, at_once):
-        """Run all cells, then judge; whether what is not judged yet is to be judged at once in another run.
+    def through(self, process):
+        """Run all cells, then judge; what is not judged then needs another run.
 
         What the course's own notebook imports is there from the start, whatever else a student has written into the cell that
-        imports it. at_once: judge where the test cells stand, in the notebook's own process, and keep no outputs; for those of
-        which there is no snapshot, since the student's code left no room for it, or ended it
+        imports it. Those that are set aside come last: judged at once, where their test cells stand, in the notebook's own
+        process, whose outputs are then not kept.
         """
+        at_once = set(self.released.points) <= self.verdicts.keys() | self.aside
         self.failures, snapshots = {**(self.failures if at_once else {}), **self.skip}, {}
         try:
             process.prepare(_imports(self.released))
@@ -129,6 +131,8 @@ class _Run:
         for position, cell in enumerate(self.intake.notebook.cells):
             name = _exercise(cell, self.released)
             if cell.cell_type != "code" or position in self.skip or name in self.verdicts:
+                continue
+            if name in self.aside and not at_once:
                 continue
             try:
                 if name is None and self._run_cell(process, cell, position, at_once):
@@ -145,32 +149,31 @@ class _Run:
                 self.skip[position] = stopped(cell.source, ended.reason)
                 if process.exhausted:
                     break
-                return False
+                return
             if process.gone:
                 self.skip[position] = stopped(cell.source, "its function's process ended")
-                return False
+                return
         asked = {name: taken for name, taken in snapshots.items() if taken.meets()}
+        self.aside |= snapshots.keys() - asked.keys()
         answers = {}
         for name, taken in asked.items():  # all public cases before the first hidden one: what they give is shown
             answers[name] = public_example.answers(name, self.public.get(name), taken)
             if taken.gone:
                 self._judge(name, taken, answers[name])
-                return self._was_ended(name)
+                return self._after_end(name)
         for name, taken in asked.items():
             self._judge(name, taken, answers[name])
             if taken.gone:
-                return self._was_ended(name)
-        return True
+                return self._after_end(name)
 
-    def _was_ended(self, name):
-        """After a snapshot was stopped, and all others with it, for what it has started may still be there: as `through`.
+    def _after_end(self, name):
+        """A snapshot was stopped, and all others with it, for what it has started may still be there.
 
         Whether its function has ended it, or the notebook did, shows where it is judged at once.
         """
-        killed = self.verdicts[name].status == "killed"
-        if killed:
+        if self.verdicts[name].status == "killed":
             del self.verdicts[name]
-        return killed
+            self.aside.add(name)
 
     def _run_cell(self, process, cell, position, at_once):
         """Run a cell of the student's; whether it ended the notebook."""

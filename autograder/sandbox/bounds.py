@@ -27,7 +27,7 @@ class Limits:
     """
 
     cell: float = 6.0
-    call: float = 2.0
+    call: float = 3.0
     notebook: float = 15.0
     submission: float = 30.0
     grace: float = 1.0  # between the interrupt and the end of the process

@@ -206,7 +206,7 @@ def made(course):
 
 def test_a_comment_and_what_is_unrelated_change_neither(course_of_ada):
     before = made(course_of_ada), recorded(course_of_ada, "ada")
-    edit(course_of_ada, "autograder/grading/judge.py", "import time\n", "import time  # in seconds\n")
+    edit(course_of_ada, "autograder/grading/judge.py", "import nbformat\n", "import nbformat  # of Jupyter\n")
     edit(course_of_ada, "autograder/pages/exporter.py", '"""nbgrader\'s feedback pages', '"""Feedback pages')
     edit(course_of_ada, "autograder/doctor.py", "import ", "import this\nimport ")
     edit(course_of_ada, "autograder/demo/students/ada.py", "def ", "def another():\n    pass\n\n\ndef ")

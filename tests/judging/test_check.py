@@ -246,8 +246,11 @@ def test_the_failing_case_is_drawn_as_frames(name, wrong, frames, points):
 
 
 def test_the_expected_frame_is_where_it_should_be():
-    scene = pictured("object_in_gripper", lambda base_T_camera, base_T_gripper, p: p)
-    case = key_of("object_in_gripper")["cases"][0]
+    def wrong(base_T_camera, base_T_gripper, p):
+        return p
+
+    scene = pictured("object_in_gripper", wrong)
+    case = examine("object_in_gripper", key_of("object_in_gripper"), lambda a, k: call(wrong, a, k)).failing
     base_T_camera, base_T_gripper, p = map(codec.decode, case["args"])
     assert np.allclose(scene.lookup("base", "camera"), base_T_camera)
     assert np.allclose(scene.lookup("base", "gripper"), base_T_gripper)
