@@ -155,25 +155,14 @@ class _Run:
                 return
         asked = {name: taken for name, taken in snapshots.items() if taken.meets()}
         self.aside |= snapshots.keys() - asked.keys()
-        answers = {}
-        for name, taken in asked.items():  # all public cases before the first hidden one: what they give is shown
-            answers[name] = public_example.answers(name, self.public.get(name), taken)
-            if taken.gone:
-                self._judge(name, taken, answers[name])
-                return self._after_end(name)
+        # All public cases before the first hidden one: what they give is shown.
+        answers = {name: public_example.answers(name, self.public.get(name), taken) for name, taken in asked.items()}
         for name, taken in asked.items():
             self._judge(name, taken, answers[name])
-            if taken.gone:
-                return self._after_end(name)
-
-    def _after_end(self, name):
-        """A snapshot was stopped, and all others with it, for what it has started may still be there.
-
-        Whether its function has ended it, or the notebook did, shows where it is judged at once.
-        """
-        if self.verdicts[name].status == "killed":
-            del self.verdicts[name]
-            self.aside.add(name)
+            if self.verdicts[name].status == "killed":
+                # Whether its function has ended it, or something else here, shows where it is judged at once.
+                del self.verdicts[name]
+                self.aside.add(name)
 
     def _run_cell(self, process, cell, position, at_once):
         """Run a cell of the student's; whether it ended the notebook."""

@@ -237,7 +237,7 @@ class Asked:
                 return self._wait(nonce, number, min(seconds, self._left()))
             except Late:
                 self.allowance.limit_reached()
-                self._interrupt()
+                self._signal(signal.SIGINT)
                 return self._wait(nonce, number, self.limits.grace)
         except Late as error:
             raise self._ended("timeout", "it took too long, and did not heed the interrupt") from error
@@ -275,12 +275,12 @@ class Asked:
         self.glanced = time.monotonic()
         return self.watch.excess() if self.watch else None
 
-    def _interrupt(self):
+    def _signal(self, number):
         try:
             if self.handle is not None:
-                signal.pidfd_send_signal(self.handle, signal.SIGINT)
+                signal.pidfd_send_signal(self.handle, number)
             else:
-                os.kill(self.pid, signal.SIGINT)
+                os.kill(self.pid, number)
         except ProcessLookupError:
             pass  # it has just ended; the channel tells
 
@@ -318,6 +318,10 @@ class Snapshot(Asked):
             return False
         finally:
             self.allowance.use(time.monotonic() - start)
+
+    def _ended(self, status, reason):
+        self._signal(signal.SIGKILL)  # others of the sandbox go on
+        return super()._ended(status, reason)
 
     def _hung_up(self):
         connection = self.channel.connection
