@@ -316,7 +316,6 @@ def grade(options):
     here = course()
     ForkServer.serving(here.package)  # loads while the rest is loaded here
     from .bridge import gradebook  # noqa: F401 (takes as long as the fork server's start)
-    from .grading.network import unprotected
     from .grading.workers import Cluster
 
     students = here.students()
@@ -330,7 +329,7 @@ def grade(options):
     for name, what_to_do in astray.items():
         errors.print(f"{name if name.isprintable() else repr(name)}: not graded: {what_to_do}.", markup=False)
     with Cluster(options.scheduler) if options.scheduler else nullcontext() as cluster:
-        if exposed := unprotected(cluster.client) if cluster else []:
+        if exposed := cluster.unprotected() if cluster else []:
             errors.print(OPEN_TO_THE_NETWORK.format(escape(", ".join(exposed))))
         failed = _grade(
             here,

@@ -211,6 +211,12 @@ class Cluster:
                 for future in wait(running, return_when=FIRST_COMPLETED).done:
                     yield running.pop(future), _outcome(future)
 
+    def unprotected(self):
+        """The addresses of the scheduler and the workers that others in the network can use."""
+        from .network import unprotected  # not before: distributed sets up logs of its own
+
+        return unprotected(self.client)
+
     def ask(self, function, *arguments):
         """What a function answers on one of the workers."""
         return self.client.submit(function, *arguments, pure=False).result()
