@@ -25,7 +25,7 @@ from .failed_cells import FailedCell, explained, failed, stopped
 from .telling import Telling
 
 MOST_RESTARTS = 10  # times a notebook is run again without the cell or call that brought its process down
-RESTART = 1.0  # seconds of the notebook's time that this costs besides
+RESTART = 1.0  # seconds of the notebook's time that each costs besides
 
 
 @dataclass(frozen=True)
@@ -72,10 +72,11 @@ def judge(
         run = _Run(intake, released, keys, public, verdicts, examples)
         time, over, runs = sandbox.time(), False, 0
         while set(verdicts) != set(released.points) and runs <= MOST_RESTARTS and not over:
+            if runs:
+                time.cells.use(RESTART)
             with sandbox.notebook(time) as process:
                 run.through(process)
                 over = process.over
-            time.cells.use(RESTART)
             runs += 1
         status = "timeout" if over else "error"
         for name in released.points:

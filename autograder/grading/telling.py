@@ -4,12 +4,13 @@ import builtins
 import re
 from functools import cached_property
 
+from .failed_cells import MISSING_NAME
+
 KNOWN = {
     "LinAlgError",
     *(name for name, value in vars(builtins).items() if isinstance(value, type) and issubclass(value, Exception)),
 }
 ERROR = re.compile(r"(\w+)(?:: .*?)??(?:, in your line (\d+): `(.*)`)?", re.DOTALL)  # see calling.one_line
-NO_NAME = re.compile(r"NameError: name '(\w+)' is not defined")
 
 
 class Telling:
@@ -31,10 +32,11 @@ class Telling:
     def __call__(self, text):
         if text in self.public:
             return text
-        kind, number, line = ERROR.fullmatch(text).groups()
-        if kind not in KNOWN:
+        error = ERROR.fullmatch(text)
+        if error is None or error[1] not in KNOWN:  # an answer that is none may have any words
             return ""
-        if (found := NO_NAME.match(text)) and re.search(rf"\b{found[1]}\b", self.source):
+        kind, number, line = error.groups()
+        if (found := MISSING_NAME.match(text)) and re.search(rf"\b{found[1]}\b", self.source):
             kind = found[0]
         lines = self.source.split("\n")
         if number and int(number) <= len(lines) and lines[int(number) - 1].strip().startswith(line.removesuffix("…")):

@@ -6,10 +6,15 @@ import re
 import nbformat
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from support import ASKED, points, run, scores
 from transform_lab.judging import codec
 
 from autograder.exercises import EXERCISES, PUBLIC_SEED, key
+from autograder.grading.grade import grade_submission, grading_run
+from autograder.grading.telling import KNOWN, Telling
+from autograder.intake.submission import Submission
 
 ONE, SEED = "1_rotation", 1234
 NUMBER = re.compile(r"told(-?\d+\.\d{6})e")  # what each function below makes of an argument's first number
@@ -147,3 +152,41 @@ def test_answers_by_position_earn_next_to_nothing(course, hand_in, sandboxed):
     found = scores(course, "eve")
     assert len(found) == len(EXERCISES)
     assert sum(found.values()) <= 3 and found["hand_transform"] == 2, found
+
+
+@given(st.text() | st.from_regex(r"\A(an array of shape|<\w+> instead of|ValueError: |told_1)[^\n]*\Z"))
+def test_whatever_is_wrong_with_a_reply_something_is_said_or_nothing(text):
+    """Of words that no public case has: at most an error's usual name, and the student's own line."""
+    assert Telling((), "x = 1")(text) in ("", *KNOWN)
+
+
+def test_what_only_a_hidden_case_shows_costs_no_other_exercise(course, hand_in, sandboxed):
+    """A shape that depends on the argument is said without its numbers."""
+    notebook = nbformat.read(course.source / f"{ONE}.ipynb", as_version=4)
+    shaped = (
+        "from scipy.spatial.transform import Rotation\ndef rotation_about_z(degrees):\n"
+        "    if round(degrees, 3) != degrees:\n        return np.zeros((4 + int(1e6 * abs(degrees)) % 900, 1))\n"
+        "    return Rotation.from_euler('z', degrees, degrees=True).as_matrix()"
+    )
+    for cell in notebook.cells:
+        if cell.metadata.get("nbgrader", {}).get("grade_id") == "rotation_about_z-solution":
+            cell.source = shaped
+    hand_in(course, "ann", {ONE: notebook})
+    assert run(course, "grade", "--no-feedback")[0] == 0
+    found = scores(course, "ann")
+    assert sum(found.values()) - found["rotation_about_z"] == points(ONE) - ASKED[ONE].points["rotation_about_z"]
+    assert "wrong shape" in (course.autograded("ann") / f"{ONE}.ipynb").read_text()
+
+
+def test_another_run_costs_time_and_the_first_does_not(course, sandboxed, monkeypatch):
+    monkeypatch.setattr("autograder.grading.judge.RESTART", 1e6)
+    two = "2_homogeneous_transforms"
+    files = {f"{name}.ipynb": (course.source / f"{name}.ipynb").read_bytes() for name in (ONE, two)}
+    against = grading_run(course, 1, notebooks=[ONE, two])
+    rows = grade_submission(Submission("ann", files), against).rows
+    assert {row.status for row in rows if row.notebook in (ONE, two)} == {"graded"}
+    broken = nbformat.reads(files[f"{ONE}.ipynb"].decode(), as_version=4)
+    broken.cells.insert(1, nbformat.v4.new_code_cell("import os\nos._exit(1)"))
+    files[f"{ONE}.ipynb"] = nbformat.writes(broken).encode()
+    rows = grade_submission(Submission("ann", files), against).rows
+    assert "timeout" in {row.status for row in rows if row.notebook == two}
