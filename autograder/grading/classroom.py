@@ -73,10 +73,8 @@ def _record(writer, graded):
     """Record; a Failure, or None."""
     try:
         writer.record(graded)
-    except SQLAlchemyError as error:
-        return Failure(Failure.of(error).words, of_content=False)  # locked, full, read-only, …
     except Exception as error:
-        return Failure.of(error)
+        return Failure.of(error, SQLAlchemyError)  # locked, full, read-only, …
     return None
 
 

@@ -13,7 +13,14 @@ class Failure:
     of_content: bool
 
     @classmethod
-    def of(cls, error: BaseException) -> "Failure":
-        """The Failure that an exception stands for."""
+    def of(cls, error: BaseException, *lacking: type[BaseException]) -> "Failure":
+        """The Failure that an exception stands for.
+
+        lacking: kinds of exceptions, besides the usual ones, by which the machine says that it lacks something; another that
+            was raised in their stead counts as well
+        """
         words = f"{type(error).__name__}: {' '.join(str(error).split())}"[:300]
-        return cls(words, not isinstance(error, (OSError, MemoryError, NotStarted)))
+        first: BaseException | None = error
+        while first and not isinstance(first, lacking):
+            first = first.__cause__ or first.__context__
+        return cls(words, of_content=not (first or isinstance(error, (OSError, MemoryError, NotStarted))))

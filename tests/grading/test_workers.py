@@ -5,6 +5,8 @@ import time
 from functools import partial
 
 import pytest
+from nbgrader.api import InvalidEntry
+from sqlalchemy.exc import OperationalError
 from support import ASKED, points, run, scores, statuses
 
 from autograder.bridge.gradebook import Writer
@@ -113,6 +115,25 @@ def test_what_cannot_be_judged_has_rows_a_page_and_a_line(what, course, hand_in,
     monkeypatch.undo()
     assert run(course, "grade", "bad")[0] == 0  # is tried again, since nobody has judged it yet
     assert sum(scores(course, "bad").values()) == points(ONE)
+
+
+def test_what_the_database_lacks_is_no_fault_of_the_students(course, hand_in, solved, sandboxed, monkeypatch):
+    """nbgrader raises its own error in place of the database's; the student is graded the next time."""
+    hand_in(course, "ann", {ONE: solved[ONE]})
+    attempts = []
+
+    def full(self, graded):
+        attempts.append(graded)
+        try:
+            raise OperationalError("INSERT", {}, Exception("database or disk is full"))
+        except OperationalError as error:
+            raise InvalidEntry(*error.args)  # noqa: B904 (as nbgrader does)
+
+    with monkeypatch.context() as patched, Writer(course) as writer:
+        patched.setattr(Writer, "record", full)
+        ((_, graded, problem),) = grade_class(course, ["ann"], grading_run(course, 1), writer, jobs=1)
+    assert graded is None and "full" in problem
+    assert [sum(row.score for row in graded.rows) for graded in attempts] == [points(ONE)]
 
 
 def test_a_notebook_that_the_grader_fails_on_costs_itself(course, hand_in, solved, sandboxed, monkeypatch):
