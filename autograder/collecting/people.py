@@ -179,9 +179,8 @@ def identifier(who: Who) -> str:
 
 def folder_name(text: str) -> str:
     """A text as the name of a student's folder, and as a student's id; raises Unsure when that is none (`names.odd`)."""
-    text = re.sub(
-        r"^[.-]+\s+", "", unicodedata.normalize("NFC", text).strip()
-    )  # in place of a first name that nobody has
+    text = unicodedata.normalize("NFC", text).strip()
+    text = re.sub(r"^[.-]+\s+", "", text)  # in place of a first name that nobody has
     if text and (problem := odd(re.sub(r"[/\\]", "_", text)[:LONGEST].strip())):
         raise Unsure(f"no folder can be called {text!r}: {problem}; give a list with --students that tells who this is")
     return re.sub(r"[^\w.@+'-]", "_", re.sub(r",\s+", "_", text)).lstrip("_")[:LONGEST].rstrip(".")

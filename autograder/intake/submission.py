@@ -31,9 +31,7 @@ from .sorting import (
     sort,
 )
 
-AHEAD = timedelta(
-    days=1
-)  # zones differ by up to 14 hours, and a time may lack its own; clocks that are set by hand differ
+AHEAD = timedelta(days=1)  # zones differ by up to 14 hours, and a time may lack its own; so do clocks set by hand
 NOT_HANDED_IN = "{}: not handed in; 0 points."
 
 

@@ -73,16 +73,16 @@ def generate(course, grades, jobs):
     """
     too_much = {}
     for (student, told), found in Processes(partial(_pages, course), jobs).each(grades.items()):
-        if isinstance(found, Failure) and found.of_content:
+        if isinstance(found, Failure):
             too_much[student] = told
         else:
-            yield student, found.words if isinstance(found, Failure) else found
+            yield student, found
     for (student, _), found in Processes(partial(_pages, course, bare=True), jobs).each(too_much.items()):
         yield student, f"no feedback: {found.words}" if isinstance(found, Failure) else found
 
 
-def _pages(course, one, bare=False):
-    return _one(course, *one, bare)
+def _pages(course, of_student, bare=False):
+    return _one(course, *of_student, bare)
 
 
 def _one(course, student, grades, bare=False):

@@ -27,10 +27,8 @@ PICTURES = ("data:image/png;base64,", "data:image/jpeg;base64,", "data:image/gif
 LONGEST = 20_000  # characters of a cell, pictures not counted; the longest that we give out has below 2,000
 EMBEDDED = re.compile(r"data:image/\w+;base64,[\w+/=]+")
 SPACES = " " * 500  # a row of them takes the parser the square of its length
-EXPANDS, MARGIN = (
-    30,
-    2_000,
-)  # times as long, and characters more, a page may be; what is defined once may be used in every line
+# Times as long, and characters more, a page may be: what is defined once may be used in every line.
+EXPANDS, MARGIN = 30, 2_000
 LONGEST_FORMULA = 2_000  # characters
 DEEPEST_FORMULA = 30  # parts of it inside each other
 PART = re.compile(r"\\[{}]|(\{|\\begin\b|\\left\b)|(\}|\\end\b|\\right\b)")

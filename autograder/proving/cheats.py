@@ -1,6 +1,7 @@
 """Functions that answer without working anything out: by what they were asked before, or by what is in the public key."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from transform_lab.judging import codec
 
@@ -11,9 +12,9 @@ from ..exercises.specification import Arguments, Exercise
 def cheats(exercise: Exercise) -> dict[str, Callable[[], Callable]]:
     """{what it does: from nothing to such a function, which has not been called yet}
 
-    None for an exercise without arguments: its one answer is public by nature.
+    There is none for an exercise without arguments: its one answer is public by nature.
     """
-    public = key(exercise, PUBLIC_SEED)
+    public = key(replace(exercise, misconceptions=()), PUBLIC_SEED)
     if not public["parameters"]:
         return {}
     answers = [codec.decode(case["expected"]) for case in public["cases"]]

@@ -26,6 +26,7 @@ from IPython.core.interactiveshell import InteractiveShell
 from traitlets import Any
 from traitlets.config import Config
 from transform_lab.judging.calling import call, one_line
+from transform_lab.judging.verdict import Reply
 
 MOST_OUTPUT = 2_000_000  # bytes of output a notebook may make
 
@@ -244,7 +245,7 @@ class Executor:
         for args, kwargs in cases:
             reply = self._call(function, args, kwargs)
             yield reply
-            if reply["outcome"] not in ("returned", "raised"):
+            if not Reply(reply["outcome"]).finished:
                 break
 
     def _call(self, function, args, kwargs):

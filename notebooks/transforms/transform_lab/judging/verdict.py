@@ -104,8 +104,9 @@ def examine(
         if not reply.finished:
             return _unfinished(name, reply, case)
         answered.append((case, reply, compare(returns, case, reply)))
-    remembers = again is not None and not all(map(_is_right, answered)) and _differ(returns, answered[0], again())
-    if not all(map(_is_right, answered)):
+    right = all(outcome.right for _, _, outcome in answered)
+    remembers = not right and again is not None and _differ(returns, answered[0], again())
+    if not right:
         families = list(exercise["weights"])
         answered.sort(key=lambda one: (families.index(one[0]["family"]), _simple_first(one[0])))
     cases, replies, outcomes = map(list, zip(*answered))
@@ -119,7 +120,7 @@ def examine(
         wanted=exercise["answer"],
         parameters=tuple(exercise["parameters"]),
     )
-    if all(outcome.right for outcome in outcomes):
+    if right:
         return verdict
     if remembers:
         verdict.parts = {part: times if times == len(cases) else 0 for part, times in verdict.parts.items()}
@@ -135,11 +136,6 @@ def examine(
             verdict.answer = codec.decode(reply.value) if reply.outcome == "returned" else None
             break
     return verdict
-
-
-def _is_right(answered):
-    _, _, outcome = answered
-    return outcome.right
 
 
 def _differ(returns, answered, reply):
