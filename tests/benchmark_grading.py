@@ -169,7 +169,10 @@ def profile(folder, times=10):
         timed("start of sandboxes", host.NotebookProcess, "__init__")
         timed("end of sandboxes", host.NotebookProcess, "__exit__")
         timed("students' cells", host.NotebookProcess, "run_cell")
-        timed("students' functions, called", host.NotebookProcess, "call")
+        timed("snapshots", host.NotebookProcess, "snapshot")
+        timed("snapshots", host.Snapshot, "meets")
+        timed("students' functions, called", host.Snapshot, "_answer")
+        timed("calls and comparison", judge.public_example, "answers")
         timed("calls and comparison", judge, "examine")
         start = time.perf_counter()
         for _ in range(times):

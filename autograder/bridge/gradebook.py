@@ -118,7 +118,7 @@ class Writer:
         assignment = self.gradebook.find_assignment(ASSIGNMENT)
         done = {submission.student_id: submission for submission in self.gradebook.assignment_submissions(ASSIGNMENT)}
         rows = [EXPORTED]
-        for who in self.gradebook.students:
+        for who in sorted(self.gradebook.students, key=lambda who: (who.last_name or "", who.first_name or "", who.id)):
             when, points, penalty = None, 0.0, 0.0
             if found := done.get(who.id):
                 when, points, penalty = found.timestamp, found.score, found.late_submission_penalty or 0.0

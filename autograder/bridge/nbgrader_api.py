@@ -50,18 +50,29 @@ def call(course, command, *arguments, changed=None):
         logger.removeHandler(reasons)
     if not result["success"]:
         lines = (result.get("error") or result.get("log") or "").strip().splitlines()
-        raise CourseError("; ".join(reasons.found) or (lines[-1] if lines else "no reason given"))
-    return "; ".join(reasons.found)
+        raise CourseError(reasons.words() or (lines[-1] if lines else "no reason given")) from reasons.first
+    return reasons.words()
 
 
 class _Reasons(logging.Handler):
-    """Why nbgrader failed, in words: it logs that and then raises "Please see the the above traceback"."""
+    """Why nbgrader failed: it logs that and then raises "Please see the the above traceback", which nobody is shown."""
 
     def __init__(self, level):
         super().__init__(level)
-        self.found = {}  # in order, each once
+        self.first = None  # exception
+        self.errors, self.messages = {}, {}  # in words; in order, each once
 
     def emit(self, record):
-        error = sys.exc_info()[1]
-        words = str(error) if error else record.getMessage()
-        self.found[" ".join((words or type(error).__name__).split())[:500]] = None
+        if error := sys.exc_info()[1]:
+            self.first = self.first or error
+            self.errors[_short(str(error) or type(error).__name__)] = None
+        else:
+            self.messages[_short(record.getMessage())] = None
+
+    def words(self):
+        """Of the exceptions; what nbgrader says besides refers to them, or is all that there is."""
+        return "; ".join(self.errors or self.messages)
+
+
+def _short(text):
+    return " ".join(text.split())[:500]

@@ -10,6 +10,7 @@ from dataclasses import asdict
 from functools import partial
 from urllib.parse import quote
 
+from sqlalchemy.exc import SQLAlchemyError
 from traitlets.config import Config
 from transform_lab.judging import panel
 from transform_lab.judging.status import STATUSES
@@ -95,6 +96,8 @@ def _one(course, student, grades, bare=False):
         try:
             return write(course, student, grades) or told
         except Exception as error:  # whatever it is, the others' pages and the class report are not to be lost
+            if not Failure.of(error, OSError, SQLAlchemyError).of_content:
+                return f"no feedback: {_words(error)}"  # less of it would come to the same, or stay for good
             told = told or f"{WITHOUT}: {_words(error)}"
             last = error
     try:

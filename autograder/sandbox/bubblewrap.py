@@ -30,31 +30,28 @@ class Namespaces:
 
     def __init__(self, code):
         # The arguments go by a file: as a command line, anybody inside could read them.
-        with tempfile.TemporaryFile() as arguments, tempfile.TemporaryFile() as rules:
+        with tempfile.TemporaryFile() as arguments, tempfile.TemporaryFile() as rules, tempfile.TemporaryFile() as told:
             arguments.write(b"\0".join(os.fsencode(argument) for argument in command(code)))
-            arguments.seek(0)
             rules.write(compiled_filter())  # also for those that only hold the sandbox open: nobody in it needs more
-            rules.seek(0)
-            information, theirs = os.pipe()
-            given = {"--args": arguments.fileno(), "--seccomp": rules.fileno(), "--info-fd": theirs}
+            for file in (arguments, rules):
+                file.seek(0)
+            given = {"--args": arguments.fileno(), "--seccomp": rules.fileno(), "--info-fd": told.fileno()}
             self.process = subprocess.Popen(
                 [shutil.which("bwrap"), *(str(word) for option in given.items() for word in option), "cat"],
-                stdin=subprocess.PIPE,
+                stdin=subprocess.PIPE,  # `cat` ends with the grader, and the sandbox with `cat`
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,  # no file of ours, which could be written to from inside
                 pass_fds=given.values(),
                 env={},  # what bubblewrap itself was started with can be read inside
                 start_new_session=True,  # Ctrl-C is for the grader
             )
-            os.close(theirs)
-            with open(information, "rb") as told:
-                text = told.read()
             self.pid, self.pidfd = None, None
             try:
-                self.pid = json.loads(text)["child-pid"]
-                self.pidfd = os.pidfd_open(self.pid)
                 os.write(self.process.stdin.fileno(), b"?")  # `cat` answers once everything is mounted
                 started = os.read(self.process.stdout.fileno(), 1) == b"?"
+                told.seek(0)
+                self.pid = json.loads(told.read())["child-pid"]
+                self.pidfd = os.pidfd_open(self.pid)
             except (ValueError, OSError):
                 started = False
             if not started:
@@ -91,7 +88,8 @@ def command(code):
     """The arguments of `bwrap` that describe the sandbox."""
     package = code / "transform_lab"
     root = os.getuid() == 0
-    arguments = ["--die-with-parent", "--new-session", "--clearenv"]
+    # Not --die-with-parent: while it starts, it would be killed in two halves, of which one waits for the other for good.
+    arguments = ["--new-session", "--clearenv"]
     arguments += ["--unshare-ipc", "--unshare-pid", "--unshare-net", "--unshare-uts", "--unshare-cgroup-try"]
     # Root keeps the user namespace it has, and notebooks' processes become nobody in it (forkserver.py).
     arguments += ["--cap-drop", "ALL"] if root else ["--unshare-user"]

@@ -12,8 +12,7 @@ import time
 from functools import cache
 
 import pytest
-from support import run, wait_for
-from test_faults import processes_in
+from support import processes_in, run, wait_for
 
 from autograder.course import Course
 
@@ -33,15 +32,15 @@ def class_of_three(course, hand_in):
     return course
 
 
-def grade(course, before=()):
-    """The command of all runs, perhaps behind another one."""
-    return [*before, sys.executable, "-m", "autograder", "grade", "--seed", SEED]
+def grade(*arguments):
+    """The command of all runs."""
+    return [sys.executable, "-m", "autograder", "grade", "--seed", SEED, *arguments]
 
 
-def disturbed(course, *before):
-    """Grade to the end; (exit code, what was said)."""
+def disturbed(course, *arguments, before=()):
+    """Grade to the end, perhaps behind another command; (exit code, what was said)."""
     result = subprocess.run(
-        grade(course, before), cwd=course.root, capture_output=True, text=True, stdin=subprocess.DEVNULL
+        [*before, *grade(*arguments)], cwd=course.root, capture_output=True, text=True, stdin=subprocess.DEVNULL
     )
     assert "Traceback" not in result.stdout + result.stderr
     return result.returncode, " ".join((result.stdout + result.stderr).split())
@@ -63,7 +62,7 @@ def kill_at(course, moment, delay):
     """Grade, and kill all processes of the grader's group when so many files are new; whether it was killed."""
     before = files(course)
     grader = subprocess.Popen(
-        grade(course), cwd=course.root, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, start_new_session=True
+        grade(), cwd=course.root, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, start_new_session=True
     )
     wait_for(lambda: len(files(course).items() - before.items()) >= moment or grader.poll() is not None)
     time.sleep(delay)
@@ -74,11 +73,11 @@ def kill_at(course, moment, delay):
 
 
 def full_disk(course):
-    """Grade on a file system without room for all; what is there then is what the course has afterwards."""
+    """Grade all again on a file system without room for all; what is there then is what the course has afterwards."""
     size = sum(path.stat().st_size for path in course.root.rglob("*") if path.is_file())
     script = (
         f"cp -r {course.root}/. /mnt/ && cd /mnt && dd if=/dev/zero of=/mnt/filling bs=1k 2>/dev/null\n"
-        f"truncate -s -20k /mnt/filling\n{' '.join(grade(course))}; code=$?\n"
+        f"truncate -s -20k /mnt/filling\n{' '.join(grade('--force'))}; code=$?\n"
         f"rm /mnt/filling; rm -r {course.root}/*; cp -r /mnt/. {course.root}/; exit $code"
     )
     bwrap = ["bwrap", "--dev-bind", "/", "/", "--size", str(size + 4_000_000), "--tmpfs", "/mnt", "sh", "-c", script]
@@ -143,7 +142,8 @@ def test_a_class_that_was_disturbed_ends_as_one_that_was_not(released, hand_in, 
     code, said = full_disk(class_)
     assert code in (1, 2) and ("No space left on device" in said or "disk is full" in said), said
 
-    code, said = disturbed(class_, *f"bwrap --dev-bind / / --ro-bind {class_.gradebook} {class_.gradebook}".split())
+    read_only = f"bwrap --dev-bind / / --ro-bind {class_.gradebook} {class_.gradebook}".split()
+    code, said = disturbed(class_, "--force", before=read_only)
     assert code == 1 and "readonly database" in said, said
 
     patience = class_.root / "autograder/bridge/gradebook.py"
@@ -151,11 +151,11 @@ def test_a_class_that_was_disturbed_ends_as_one_that_was_not(released, hand_in, 
     patience.write_text(text.replace("PATIENCE = 60.0", "PATIENCE = 0.2"))
     lock = sqlite3.connect(class_.gradebook, isolation_level=None)
     lock.execute("BEGIN EXCLUSIVE")
-    code, said = disturbed(class_)
+    code, said = disturbed(class_, "--force")
     assert code == 2 and "locked" in said and "try again" in said, said
     lock.execute("COMMIT")
     lock.execute("BEGIN IMMEDIATE")  # as one who writes: others may still read
-    code, said = disturbed(class_)
+    code, said = disturbed(class_, "--force")
     assert code == 1 and "locked" in said, said
     lock.execute("COMMIT")
     lock.close()

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import nbformat
 import pytest
-from support import lacking, marks, run, scores, statuses, wait_for
+from support import lacking, marks, processes_in, run, scores, statuses, wait_for
 
 from autograder.course import Course
 
@@ -52,18 +52,6 @@ def start(course, *arguments, **environment):
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,
     )
-
-
-def processes_in(folder):
-    """The numbers of this machine's processes that work in a folder: a grader's own, and its pool's."""
-    found = []
-    for path in Path("/proc").glob("[0-9]*"):
-        try:
-            if Path(os.readlink(path / "cwd")).is_relative_to(folder):
-                found.append(int(path.name))
-        except OSError:
-            continue  # it has just ended
-    return found
 
 
 @pytest.mark.parametrize("recorded", [0, 1, 3, 5])

@@ -1,8 +1,10 @@
 """In a browser, what the grader says is what a reader sees, whatever students put around it: feedback and formgrader."""
 
 import base64
+import errno
 import io
 import json
+import os
 import shutil
 
 import nbformat
@@ -186,3 +188,17 @@ def test_where_nothing_works_a_page_has_the_points(pages, monkeypatch, bare):
         text = (folder / f"{name}.html").read_text(encoding="utf-8")
         assert "<code>is_rotation</code>: 0 of 2" in text and "<code>rotation_about_z</code>: 2 of 2" in text
     assert not feedback.is_complete(course, "eve", grades)  # the next run tries again
+
+
+def test_pages_that_the_machine_has_no_room_for_are_left_to_the_next_run(pages, monkeypatch):
+    """Pages with less in them might fit, and would stay."""
+    course, grades, folder = pages
+
+    def full(*_, **__):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    with monkeypatch.context() as patched:
+        patched.setattr(exporter.Feedback, "from_notebook_node", full)
+        assert feedback._one(course, "eve", grades) == "no feedback: [Errno 28] No space left on device"
+    assert not (folder / feedback.SUMMARY).exists() and not feedback.is_complete(course, "eve", grades)
+    assert feedback._one(course, "eve", grades) is None

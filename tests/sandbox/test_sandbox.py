@@ -2,14 +2,18 @@
 
 import json
 import os
+import shutil
+import signal
+import time
 from pathlib import Path
 
 import pytest
 from solutions.right import NAMES, RIGHT
-from support import ROOT, key_of
+from support import PATIENCE, ROOT, key_of, processes_in, wait_for
 from transform_lab.judging.verdict import examine
 
 from autograder.sandbox import Ended, Limits, Sandbox
+from autograder.sandbox.bubblewrap import Namespaces, compiled_filter, copy_code
 from autograder.sandbox.channel import MOST_RECEIVED
 from autograder.sandbox.host import MOST_OUTPUTS, MOST_REPLIED
 
@@ -608,7 +612,9 @@ def test_a_snapshot_that_is_none_is_seen(sandbox, trick):
         notebook.run_cell(trick)
         snapshot = notebook.snapshot()
         if trick == "1":
-            notebook.run_cell("import os; os.kill(-1, 9); os.wait()")
+            notebook.run_cell(
+                "import os; os.kill(max(int(name) for name in os.listdir('/proc') if name.isdigit()), 9); os.wait()"
+            )
         assert not snapshot.meets()
         assert notebook.run_cell("1").outputs
 
@@ -633,6 +639,25 @@ def test_cells_do_not_take_the_time_of_calls(sandbox):
                 notebook.run_cell("while True: pass")
             assert not snapshot.exhausted
             assert snapshot.meets() and snapshot.call("f", [], {}).value == 1
+
+
+def test_of_a_grader_that_is_killed_while_a_sandbox_starts_nothing_is_left(sandboxed, tmp_path):
+    code = copy_code(PACKAGE)
+    compiled_filter()
+    for moment in range(100):
+        grader = os.fork()
+        if grader == 0:
+            try:
+                os.chdir(tmp_path)
+                Namespaces(code)
+                time.sleep(PATIENCE)
+            finally:
+                os._exit(1)
+        time.sleep(moment * 1e-4)
+        os.kill(grader, signal.SIGKILL)
+        os.waitpid(grader, 0)
+    wait_for(lambda: not processes_in(tmp_path))
+    shutil.rmtree(code)
 
 
 def test_without_bubblewrap_the_same_code_runs_unprotected():
