@@ -29,6 +29,13 @@ def solution(name):
     return notebook
 
 
+def solve(notebook, exercise, source):
+    """Put a solution of one's own into a notebook."""
+    for cell in notebook.cells:
+        if cell.metadata.get("nbgrader", {}).get("grade_id") == f"{exercise}-solution":
+            cell.source = source
+
+
 class Edited:
     """A notebook while it is changed; a context manager that writes it back.
 

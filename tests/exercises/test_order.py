@@ -3,10 +3,9 @@
 import os
 import pickle
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
-import pytest
 from solutions.right import NAMES, RIGHT
 from solutions.wrong import WRONG
 from transform_lab.judging.calling import call
@@ -22,9 +21,9 @@ EVERY = {
 }
 
 
-@pytest.fixture(scope="module")
-def keys():
-    return {name: key(exercise, SEED) for name, exercise in EXERCISES.items()}
+@cache
+def drawn(name):
+    return key(EXERCISES[name], SEED)
 
 
 def judged(name, exercise, function):
@@ -42,49 +41,50 @@ def judged(name, exercise, function):
     )
 
 
-def some(thorough, step):
-    return list(EVERY.values())[:: 1 if thorough else step]
-
-
-def test_in_any_order(keys, thorough):
+def test_in_any_order(thorough):
     rng, different = np.random.default_rng(SEED), []
     with quiet():
-        for name, function in some(thorough, 10):
-            cases, called = keys[name]["cases"], partial(call, function)
-            first = judged(name, keys[name], called)
-            shuffled = {**keys[name], "cases": [cases[number] for number in rng.permutation(len(cases))]}
+        for name, function in list(EVERY.values())[:: 1 if thorough else 10]:
+            cases, called = drawn(name)["cases"], partial(call, function)
+            first = judged(name, drawn(name), called)
+            shuffled = {**drawn(name), "cases": [cases[number] for number in rng.permutation(len(cases))]}
             if (other := judged(name, shuffled, called)) != first:
                 different.append((name, function, first, other))
     assert not different
 
 
-def test_in_a_fresh_process_each(keys, thorough):
+def test_in_a_fresh_process_each(thorough):
     """But for what remembers earlier calls, which is what is wrong with it."""
-    different, remember = [], []
+    different, remember = [], set()
     with quiet():
-        for name, function in some(thorough, 40):
-            together = judged(name, keys[name], partial(call, function))
-            if "mutable-default" in together.misconceptions:
-                remember.append((function, together))
-            elif (apart := judged(name, keys[name], partial(in_a_process, function))) != together:
-                different.append((name, function, together, apart))
+        for name in EXERCISES:
+            functions = [function for of, function in EVERY.values() if of == name][:: 1 if thorough else 40]
+            for function, replies in zip(functions, apart(functions, drawn(name)["cases"])):
+                together = judged(name, drawn(name), partial(call, function))
+                if "mutable-default" in together.misconceptions:
+                    remember.add(function.__name__)
+                elif (other := judged(name, drawn(name), lambda *case: replies[repr(case)])) != together:
+                    different.append((name, function, together, other))
     assert not different
-    assert not thorough or {function.__name__ for function, _ in remember} == {"ttp_accumulates", "chain_remembers"}
+    assert not thorough or remember == {"ttp_accumulates", "chain_remembers"}
 
 
-def in_a_process(function, args, kwargs):
-    """The Reply of a function which nobody has called before."""
-    read, write = os.pipe()
-    if (child := os.fork()) == 0:
-        with open(write, "wb") as file:
-            pickle.dump(call(function, args, kwargs), file)
-            file.flush()
-            os._exit(0)
-    os.close(write)
-    with open(read, "rb") as file:
-        reply = pickle.load(file)
-    os.waitpid(child, 0)
-    return reply
+def apart(functions, cases):
+    """For each function its Replies, {arguments: Reply}: in a process for each case, in which all are called once."""
+    found = [{} for _ in functions]
+    for case in cases:
+        read, write = os.pipe()
+        if (child := os.fork()) == 0:
+            with open(write, "wb") as file:
+                pickle.dump([call(function, case["args"], case["kwargs"]) for function in functions], file)
+                file.flush()
+                os._exit(0)
+        os.close(write)
+        with open(read, "rb") as file:
+            for replies, reply in zip(found, pickle.load(file)):
+                replies[repr((case["args"], case["kwargs"]))] = reply
+        os.waitpid(child, 0)
+    return found
 
 
 def test_what_the_verdict_would_be_if_order_counted():

@@ -6,6 +6,7 @@ from html import unescape
 
 import nbformat
 import pytest
+from editing import solve
 from support import ROOT, run
 
 from autograder.course import Course
@@ -175,9 +176,7 @@ def graded(released, hand_in, sandboxed, tmp_path_factory):
     """A course with one student, who has one notebook with a mistake; not to be changed by tests."""
     course = Course(shutil.copytree(released.root, tmp_path_factory.mktemp("digests") / "course"))
     notebook = nbformat.read(course.source / f"{ONE}.ipynb", as_version=4)
-    for cell in notebook.cells:
-        if cell.metadata.get("nbgrader", {}).get("grade_id") == "rotation_about_z-solution":
-            cell.source = IN_DEGREES
+    solve(notebook, "rotation_about_z", IN_DEGREES)
     hand_in(course, "ada", {ONE: notebook})
     code, said = run(course, "grade")
     assert code == 0 and "1 graded" in said, said

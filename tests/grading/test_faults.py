@@ -11,6 +11,7 @@ from pathlib import Path
 
 import nbformat
 import pytest
+from editing import solve
 from support import lacking, marks, processes_in, run, scores, statuses, wait_for
 
 from autograder.course import Course
@@ -178,9 +179,7 @@ def test_a_cell_that_brings_its_process_down_costs_its_own_exercise(classroom, h
     notebook = nbformat.read(solved[ONE], as_version=4)
     for ending in endings:
         notebook.cells.insert(2, nbformat.v4.new_code_cell(ending))
-    for cell in notebook.cells:
-        if cell.metadata.get("nbgrader", {}).get("grade_id") == "is_rotation-solution":
-            cell.source = "import os\ndef is_rotation(R):\n    os._exit(1)"
+    solve(notebook, "is_rotation", "import os\ndef is_rotation(R):\n    os._exit(1)")
     hand_in(classroom, "down", {ONE: notebook})
     assert run(classroom, "grade", "--no-feedback", "down")[0] == 0
     assert statuses(classroom, "down")["is_rotation"] == "killed"

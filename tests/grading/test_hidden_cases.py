@@ -6,6 +6,7 @@ import re
 import nbformat
 import numpy as np
 import pytest
+from editing import solve
 from hypothesis import given
 from hypothesis import strategies as st
 from support import ASKED, points, run, scores
@@ -105,12 +106,12 @@ def test_what_a_public_case_shows_as_well_is_said(course, hand_in, sandboxed):
     """An error has its own words where they tell no hidden number."""
     notebook = nbformat.read(course.source / f"{ONE}.ipynb", as_version=4)
     bodies = {
-        "is_rotation-solution": "def is_rotation(R):\n    raise ValueError('not today')",
-        "same_rotation-solution": "def same_rotation(q1, q2):\n    raise ValueError(repr(q1))",
-        "rotation_about_z-solution": "def rotation_about_z(degrees):\n    return nowhere * degrees",
+        "is_rotation": "def is_rotation(R):\n    raise ValueError('not today')",
+        "same_rotation": "def same_rotation(q1, q2):\n    raise ValueError(repr(q1))",
+        "rotation_about_z": "def rotation_about_z(degrees):\n    return nowhere * degrees",
     }
-    for cell in notebook.cells:
-        cell.source = bodies.get(cell.metadata.get("nbgrader", {}).get("grade_id"), cell.source)
+    for exercise, source in bodies.items():
+        solve(notebook, exercise, source)
     hand_in(course, "ann", {ONE: notebook})
     assert run(course, "grade", "--no-feedback")[0] == 0
     text = (course.autograded("ann") / f"{ONE}.ipynb").read_text()
@@ -168,9 +169,7 @@ def test_what_only_a_hidden_case_shows_costs_no_other_exercise(course, hand_in, 
         "    if round(degrees, 3) != degrees:\n        return np.zeros((4 + int(1e6 * abs(degrees)) % 900, 1))\n"
         "    return Rotation.from_euler('z', degrees, degrees=True).as_matrix()"
     )
-    for cell in notebook.cells:
-        if cell.metadata.get("nbgrader", {}).get("grade_id") == "rotation_about_z-solution":
-            cell.source = shaped
+    solve(notebook, "rotation_about_z", shaped)
     hand_in(course, "ann", {ONE: notebook})
     assert run(course, "grade", "--no-feedback")[0] == 0
     found = scores(course, "ann")

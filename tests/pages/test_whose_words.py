@@ -9,6 +9,7 @@ import shutil
 
 import nbformat
 import pytest
+from editing import solve
 from PIL import Image
 from support import ASKED, asked, jupyter_server, run
 
@@ -73,9 +74,8 @@ def course_of_eve(released, hand_in, sandboxed, tmp_path_factory):
     """A course in which a student hands in what looks like, covers and moves verdicts, in the notebook and in an error."""
     course = Course(shutil.copytree(released.root, tmp_path_factory.mktemp("eve") / "course"))
     notebook = nbformat.read(course.source / f"{ONE}.ipynb", as_version=4)
-    for cell in notebook.cells:
-        if cell.metadata.get("nbgrader", {}).get("grade_id") == "is_rotation-solution":
-            cell.source = "def is_rotation(R):\n    raise ValueError('\\u202e' + 'A' + '\\u0301' * 20 + '✓ right')\n"
+    odd = "def is_rotation(R):\n    raise ValueError('\\u202e' + 'A' + '\\u0301' * 20 + '✓ right')\n"
+    solve(notebook, "is_rotation", odd)
     hand_in(course, "eve", {ONE: around_each_check(notebook)})
     code, said = run(course, "grade")
     assert code == 0, said
