@@ -667,10 +667,11 @@ def test_without_bubblewrap_the_same_code_runs_unprotected():
     assert not Path(folder).exists()
 
 
-def test_right_solutions_are_right_in_the_sandbox_too(sandbox):
+def test_right_solutions_are_right_in_the_sandbox_too(sandboxed):
     """Callable objects, caches, helpers of other cells and the rest: called by name, in the notebook's own process."""
     source = (ROOT / "tests/solutions/right.py").read_text(encoding="utf-8")
-    with sandbox.notebook() as notebook:
+    all_of_them = Limits(notebook=900.0, submission=900.0)
+    with Sandbox(PACKAGE, limits=all_of_them) as box, box.notebook() as notebook:
         assert not [output for output in notebook.run_cell(source).outputs if output["output_type"] == "error"]
         for index, (name, label) in enumerate(zip((name for name, _ in RIGHT), NAMES)):
             notebook.run_cell(f"{name} = RIGHT[{index}][1]")
