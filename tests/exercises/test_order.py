@@ -75,10 +75,11 @@ def apart(functions, cases):
     for case in cases:
         read, write = os.pipe()
         if (child := os.fork()) == 0:
-            with open(write, "wb") as file:
-                pickle.dump([call(function, case["args"], case["kwargs"]) for function in functions], file)
-                file.flush()
-                os._exit(0)
+            try:
+                with open(write, "wb") as file:
+                    pickle.dump([call(function, case["args"], case["kwargs"]) for function in functions], file)
+            finally:
+                os._exit(0)  # whatever was raised: the tests go on in one process
         os.close(write)
         with open(read, "rb") as file:
             for replies, reply in zip(found, pickle.load(file)):
