@@ -11,17 +11,18 @@ from inspect import signature
 
 import numpy as np
 from transform_lab.judging import codec
-from transform_lab.judging.answers import is_right, parts_of
+from transform_lab.judging.answers import parts_of
 from transform_lab.judging.comparison import frames_of
-from transform_lab.judging.diagnosis import error_of, open_parts_of
+from transform_lab.judging.diagnosis import error_of
 from transform_lab.judging.kinds import KINDS
 from transform_lab.judging.plain import PlainCase, PlainExercise
 from transform_lab.judging.reading import Unfit
 
 PUBLIC_SEED = 24  # the cases students see; any other seed draws hidden ones
 ORDER = 1  # with the seed, what the order of the cases is drawn from
-DIGITS = 12  # decimals kept of arguments and right answers: far below the tolerance of 1e-6
-DIGITS_WRONG = 8  # of wrong answers, which are most of the key
+DIGITS_OF_ARGUMENTS = 15  # decimals: nearly all there are, without the noise that sines and products leave at zero
+DIGITS = 12  # of right answers: far below the tolerance of 1e-6
+DIGITS_WRONG = 7  # of wrong ones, which are most of the key
 PROTOCOL = 4  # of pickle; from 5 on, arrays do not own their numbers
 
 
@@ -126,20 +127,22 @@ class Arguments:
 
 
 def _case(exercise: Exercise, case: Case) -> PlainCase:
-    args = [_rounded(codec.encode(arg)) for arg in case.args]
-    kwargs = {name: _rounded(codec.encode(arg)) for name, arg in case.kwargs.items()}
+    args = [_rounded(codec.encode(arg), DIGITS_OF_ARGUMENTS) for arg in case.args]
+    kwargs = {name: _rounded(codec.encode(arg), DIGITS_OF_ARGUMENTS) for name, arg in case.kwargs.items()}
     fresh = Arguments(args, kwargs).fresh
     expected = _answer(exercise.reference, fresh)
     right = _parts_of_the_right(exercise, case, expected)
     given, named = fresh()
-    wrong = [_wrong_answer(m, m.varies(*given, **named), fresh) for m in exercise.misconceptions]
     return {
         "family": case.family,
         "args": args,
         "kwargs": kwargs,
         "expected": expected,
         "wrong": [
-            None if _right(exercise.returns, answer, right) else _rounded(answer, DIGITS_WRONG) for answer in wrong
+            {"any": list(open_parts)}
+            if (open_parts := misconception.varies(*given, **named))
+            else _wrong_answer(exercise.returns, misconception, fresh, right)
+            for misconception in exercise.misconceptions
         ],
     }
 
@@ -154,15 +157,19 @@ def _parts_of_the_right(exercise, case, expected):
         raise ValueError(f"{where} is {unfit}") from unfit
 
 
-def _wrong_answer(misconception, open_parts, fresh):
-    answer = {"any": list(open_parts)} if open_parts else _answer(misconception.wrong, fresh)
-    if answer is None:  # which would stand for a right answer in the key
+def _wrong_answer(returns, misconception, fresh, right):
+    """The answer of a misconception as the key has it; see PlainCase."""
+    answer = _answer(misconception.wrong, fresh)
+    if answer is None:
         raise ValueError(f"{misconception.id}: to return None is a misconception of every exercise already")
-    return answer
-
-
-def _right(returns, answer, right):
-    return not error_of(answer) and not open_parts_of(answer) and is_right(returns, codec.decode(answer), right)
+    if error_of(answer):
+        return answer
+    try:
+        got = parts_of(returns, codec.decode(answer))
+    except Unfit:
+        return {"unfit": _rounded(answer, DIGITS_WRONG)}
+    wrong = [name for name, part in KINDS[returns].parts.items() if not part.agree(got[name], right[name])]
+    return {"parts": {name: _rounded(got[name].ravel().tolist(), DIGITS_WRONG) for name in wrong}} if wrong else None
 
 
 def _answer(function, fresh):

@@ -9,8 +9,9 @@ class PlainCase(TypedDict):
     """The arguments of one call, with the right answer to them and the wrong ones.
 
     family: which kind of case it is, in a student's words
-    wrong: what each misconception of the exercise would answer: null where it happens to be right, {"raises": name of the
-        exception} where it raises, {"any": parts of the answer} where these may be anything; left out where only right
+    wrong: what each misconception of the exercise would answer: null where it happens to be right, {"parts": {name: numbers}}
+        with the parts of the answer that are wrong, {"unfit": plain data} where it is no answer of the kind, {"raises": name of
+        the exception} where it raises, {"any": parts of the answer} where these may be anything; left out where only right
         answers are told (public_example.py)
     """
 
