@@ -4,6 +4,7 @@ One specification feeds everything: the public key that `check` reads in the not
 the diagnosis in feedback and report, and the tests that prove the grader.
 """
 
+import math
 import pickle
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -168,8 +169,11 @@ def _wrong_answer(returns, misconception, fresh, right):
         got = parts_of(returns, codec.decode(answer))
     except Unfit:
         return {"unfit": _rounded(answer, DIGITS_WRONG)}
-    wrong = [name for name, part in KINDS[returns].parts.items() if not part.agree(got[name], right[name])]
-    return {"parts": {name: _rounded(got[name].ravel().tolist(), DIGITS_WRONG) for name in wrong}} if wrong else None
+    told = [
+        None if part.agree(got[name], right[name]) else _short(part.fingerprint(got[name]))
+        for name, part in KINDS[returns].parts.items()
+    ]
+    return told if any(fingerprint is not None for fingerprint in told) else None
 
 
 def _answer(function, fresh):
@@ -179,6 +183,12 @@ def _answer(function, fresh):
             return _rounded(codec.encode(function(*args, **kwargs)))
         except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError, np.linalg.LinAlgError) as error:
             return {"raises": type(error).__name__}
+
+
+def _short(number):
+    """A number in as few characters as the tolerance allows, which is relative beyond 1."""
+    short = round(number, DIGITS_WRONG - max(0, math.frexp(number)[1] * 3 // 10))
+    return int(short) if short.is_integer() else short
 
 
 def _rounded(plain, digits=DIGITS):
