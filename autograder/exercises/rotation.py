@@ -681,14 +681,14 @@ def same_rotation_cases(rng):
             *((q[n], sign * nearby(q[n], ALIKE)) for n, sign in ((3, 1), (4, -1))),
             *((q[n], sign * nearby(q[n], TOO_FAR * 10.0**d)) for d in range(3) for n, sign in ((5 + d, 1), (8 - d, -1))),
             *((even, sign * _shifted(even, TOO_FAR)) for sign in (1, -1)),
+            *(
+                (_unequal(even, number, 1e-7), sign * _unequal(even, number, -1e-7))
+                for number, sign in ((0, 1), (1, -1), (2, 1))
+            ),
         ],
         "two nearly the same, where a number is 0 but for rounding, or off by more": [
             *(pair for some in with_zeros for pair in _around_zeros(some)),
             (turn(axis, ALIKE / 2), turn(-axis, ALIKE / 2)), (turn(axis, ALIKE / 2), -turn(other, ALIKE / 2)),
-        ],
-        "two nearly the same, where two numbers are equal but for rounding": [
-            (_unequal(even, number, 1e-7), sign * _unequal(even, number, -1e-7))
-            for number, sign in ((0, 1), (1, -1), (2, 1))
         ],
     }  # fmt: skip
     return [Case(family, pair) for family, pairs in families.items() for pair in pairs]
