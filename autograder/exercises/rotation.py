@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 from scipy.spatial.transform import Rotation
-from transform_lab.judging.diagnosis import together
 from transform_lab.judging.kinds import TOLERANCE
+from transform_lab.judging.naming import together
 
 from .cases import half_turn, quaternion, rotation, rotation_about, signed_permutations, slanted_axis, tilt, transform
 from .equivalent import LISTS, MINUS_TRUE, NEAR_TOLERANCE, NUMPYS_NUMBERS, NUMPYS_TRUTH, SAME_SIZE

@@ -13,9 +13,8 @@ import numpy as np
 from transform_lab.judging import codec
 from transform_lab.judging.answers import is_right, parts_of
 from transform_lab.judging.comparison import frames_of
-from transform_lab.judging.diagnosis import error_of, open_parts_of
 from transform_lab.judging.kinds import KINDS
-from transform_lab.judging.plain import PlainCase, PlainExercise
+from transform_lab.judging.plain import PlainCase, PlainExercise, error_of, open_parts_of
 from transform_lab.judging.reading import Unfit
 
 PUBLIC_SEED = 24  # the cases students see; any other seed draws hidden ones
@@ -149,9 +148,12 @@ def _parts_of_the_right(exercise, case, expected):
     if error_of(expected):
         raise ValueError(f"{where} is an error, {error_of(expected)}")
     try:
-        return parts_of(exercise.returns, codec.decode(expected))
+        parts = parts_of(exercise.returns, codec.decode(expected))
     except Unfit as unfit:
         raise ValueError(f"{where} is {unfit}") from unfit
+    if not all(np.isfinite(value).all() for value in parts.values()):
+        raise ValueError(f"{where} has NaN or infinity in it")
+    return parts
 
 
 def _wrong_answer(misconception, open_parts, fresh):

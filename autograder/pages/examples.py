@@ -4,7 +4,7 @@ import json
 from functools import cache
 
 from transform_lab.judging import comparison, panel
-from transform_lab.judging.diagnosis import error_of, open_parts_of
+from transform_lab.judging.plain import error_of, open_parts_of
 from transform_lab.judging.verdict import Reply, examine
 
 from ..exercises import EXERCISES, PUBLIC_SEED, key

@@ -206,7 +206,11 @@ def test_answers_that_look_alike_show_how_far_apart_they_are(said):
         ("transform_to_pose", lambda T: Pose(Point(*T[:3, 3]), Quaternion()), "no orientation: all four numbers are 0"),
         ("transform_to_pose", lambda T: Pose(Point(*T[:3, 3]), Quaternion(0, 0, 0, 2)), ", and of length 2"),
         ("transform_to_pose", lambda T: Pose(Point(*T[:3, 3]), Quaternion(1e200, 0, 0, 1)), "and of length inf"),
-        ("transform_point", lambda T, p: ["0.1", "0.2", "0.3"], "a list instead of an array of 3 coordinates"),
+        (
+            "transform_point",
+            lambda T, p: ["0.1", "0.2", "0.3"],
+            "a list with a str in it instead of an array of 3 coordinates",
+        ),
         ("transform_point", lambda T, p: np.zeros((500, 2)), "yours  an array of shape (500, 2)"),
         ("is_rotation", lambda R: True, "  expected  False\n  yours     True"),
         ("chain", lambda *transforms: transforms[0], "transforms[1]"),

@@ -9,8 +9,8 @@ from solutions.wrong import WRONG
 from support import SEEDS, judged
 from transform_lab import Point, Pose, Quaternion
 from transform_lab.judging.answers import parts_of
-from transform_lab.judging.diagnosis import GENERAL
 from transform_lab.judging.kinds import KINDS, matrix_of
+from transform_lab.judging.naming import GENERAL
 from transform_lab.judging.verdict import Reply, examine
 
 from autograder.exercises import EXERCISES, PUBLIC_SEED
