@@ -95,7 +95,7 @@ ADVICE = tuple(
         (rf"'({MESSAGE})' object has no attribute", FIELDS),
         (
             rf"not '?({MESSAGE})\b|'({MESSAGE})' object|non-iterable ({MESSAGE})\b|of type ({MESSAGE})\b|"
-            rf"class 'transform_lab.messages|operand.*'({MESSAGE})'",
+            rf"class 'transform_lab.messages|operand.*'({MESSAGE})'|'({MESSAGE})' has no len",
             FIELDS,
         ),
         (r"'(numpy.ndarray|list|tuple)' object has no attribute '([xyzw]|position|orientation)'", NO_FIELDS),
@@ -207,7 +207,7 @@ ADVICE = tuple(
             "For which arguments is what you divide by 0? Print it, just before that line.",
         ),
         (
-            r"math domain error",
+            r"math domain error|expected a (nonnegative|positive) input|expected a number in range",
             "A root of a negative number, or the angle of a cosine beyond 1: rounding is enough for that. Print what goes in.",
         ),
         # indices, unpacking

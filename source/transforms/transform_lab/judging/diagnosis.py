@@ -19,10 +19,13 @@ from .slips import by_shape
 from .two_mistakes import part_by_part
 
 # Where a formula breaks down.
-NO_NUMBER = r"ZeroDivisionError|FloatingPointError|ValueError: .*(math domain|zero norm)|LinAlgError: Singular"
+NO_NUMBER = (
+    "ZeroDivisionError|FloatingPointError|LinAlgError: Singular|"
+    "ValueError: .*(math domain|zero norm|expected a (nonnegative|positive) input|expected a number in range)"
+)
 PRINT_IS_NOT_RETURN = "`print` shows a value to you; only `return` hands it to whoever called the function."
 WRITTEN_ELSEWHERE = (
-    "Your function changed one of its arguments, and returns what that was before.",
+    "Your function changed one of its arguments, and returns one as it was before.",
     "Is the result written into the argument, in place of the answer? Make a new object, write into that, and return it.",
 )
 REMEMBERS = general("mutable-default")
@@ -71,12 +74,16 @@ def _explain(name, exercise, replies, outcomes, tell):
     found = shared([misconception for misconception, fit in zip(misconceptions, fits) if fit == best > 0])
     if found is not None:
         return found
+    if constant(replies):
+        return _general(name, exercise, replies, outcomes, tell) if outcomes[0].problem else general("hard-coded")
+    found = Diagnosis() if any(outcome.got is None for outcome in outcomes) else part_by_part(exercise, outcomes)
+    if found.ids:
+        return found
     if any(outcome.problem for outcome in outcomes):
         return _general(name, exercise, replies, outcomes, tell)
-    if constant(replies):
-        return general("hard-coded")
-    found = part_by_part(exercise, outcomes)
-    return found if found.ids else by_shape(exercise, outcomes)
+    if any(outcome.mutated for outcome in outcomes):  # what is wrong may come from the changed argument alone
+        return found
+    return by_shape(exercise, outcomes)
 
 
 def _fit(index, exercise, replies, outcomes):

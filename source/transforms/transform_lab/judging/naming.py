@@ -46,7 +46,7 @@ GENERAL = {
         "Where can a sign get lost, or turn round? In a root, in an `abs`, in a cross product in the other order, at a minus.",
     ),
     "entry-slip": (
-        "A single number is wrong, always at the same place, and all others are right.",
+        "A single number is wrong, always the same, and all others are right.",
         "Go through what you wrote for this place, letter by letter: an index, a sign, a factor.",
     ),
     "too-strict": (

@@ -3,14 +3,16 @@
 They say what is seen, and no more: only signs are wrong, a single number is, or a predicate fails on one side alone.
 """
 
+from itertools import product
+
 import numpy as np
 
 from . import codec
 from .answers import parts_of
 from .kinds import KINDS, TOLERANCE
-from .naming import GENERAL, Diagnosis, general
+from .naming import Diagnosis, general
 
-AT_LEAST = 2  # failing cases; a single one shows nothing that they have in common
+AT_LEAST, MANY = 2, 4  # failing cases: one shows nothing that they have in common; many need no number that tells
 
 
 def by_shape(exercise, outcomes):
@@ -20,60 +22,55 @@ def by_shape(exercise, outcomes):
     if len(failing) < AT_LEAST:
         return Diagnosis()
     if exercise["returns"] == "truth":
-        return _one_sided([bool(right["answer"]) for _, right in failing])
-    parts = KINDS[exercise["returns"]].parts
-    slips = [_slips(parts, got, right) for got, right in failing]
-    places = {place for slip in slips for place in slip}
-    sizes_right = all(size_right for slip in slips for size_right, _ in slip.values())
-    telling = any(telling for slip in slips for _, telling in slip.values())
-    if sizes_right and telling:
-        (where,) = places if len(places) == 1 else [""]
-        says, hint = GENERAL["sign-slip"]
-        return general("sign-slip", f"A sign is wrong: {where}. All else is right." if where else says, hint)
-    if len(places) == 1 and telling and sum(value.size for value in expected[0].values()) > 1:
-        return general(
-            "entry-slip", f"A single number is wrong, always the same: {places.pop()}. All others are right."
-        )
-    return Diagnosis()
-
-
-def _one_sided(deserved):
-    """The Diagnosis of a predicate's wrong answers, from the right ones."""
-    if len(set(deserved)) != 1:
+        deserved = {bool(right["answer"]) for _, right in failing}
+        met = {bool(right["answer"]) for outcome, right in zip(outcomes, expected) if outcome.answered}
+        one_sided = len(deserved) == 1 and not deserved >= met
+        return general("too-strict" if True in deserved else "too-generous") if one_sided else Diagnosis()
+    if sum(part.size for part in expected[0].values()) == 1:
         return Diagnosis()
-    return general("too-strict" if deserved[0] else "too-generous")
+    return _slip([_readings(KINDS[exercise["returns"]].parts, got, right) for got, right in failing])
 
 
-def _slips(parts, got, expected):
-    """The wrong numbers of an answer, as {place: (whether its size is right, whether that tells anything)}.
-
-    Of q and -q, which are the same orientation, the one is taken in which fewer numbers are wrong.
-    """
-    found = {}
-    for name, part in parts.items():
-        signs = (1, -1) if part.quaternion else (1,)
-        slips = min((_of_part(name, part, sign * got[name], expected[name]) for sign in signs), key=len)
-        found |= slips
-    return found
-
-
-def _of_part(name, part, got, expected):
-    slack = TOLERANCE * np.maximum(1.0, np.abs(expected))
-    sizes = np.abs(np.abs(got) - np.abs(expected)) <= slack
-    return {
-        _place(name, part, index): (bool(sizes[index]), _telling(expected[index]))
-        for index in map(tuple, np.argwhere(np.abs(got - expected) > slack).tolist())
-    }
+def _slip(failing):
+    """The Diagnosis of wrong numbers, from the `_readings` of each failing case."""
+    slips = [slip for readings in failing for slip in readings[0].values()]
+    if not any(slip.telling for slip in slips) and len(failing) < MANY:
+        return Diagnosis()
+    alone = [{place for reading in readings if len(reading) == 1 for place in reading} for readings in failing]
+    places = set.intersection(*alone)
+    where = f"{places.pop()}. All others are right." if len(places) == 1 else ""
+    if all(slip.size_right for slip in slips):
+        return general("sign-slip", f"A single sign is wrong, always the same: {where}" if where else "")
+    return general("entry-slip", f"A single number is wrong, always the same: {where}") if where else Diagnosis()
 
 
-def _telling(number):
-    """Whether another formula hardly gives this number by chance, as it does 0, 1, and the sine of 30 or 45 degrees."""
-    return bool(abs(4 * number**2 - round(4 * number**2)) > 1e-3)
+class _Wrong:
+    """A wrong number: whether its size is right, and whether that tells anything."""
+
+    def __init__(self, got, expected):
+        self.size_right = abs(abs(got) - abs(expected)) <= TOLERANCE * max(1.0, abs(expected))
+        # Another formula hardly gives this number by chance, as it does 0, 1, and the sine of 30, 45 or 60 degrees.
+        self.telling = abs(4 * expected**2 - round(4 * expected**2)) > 1e-3
+
+
+def _readings(parts, got, expected):
+    """The wrong numbers of an answer, as [{place: _Wrong}, …]: one for each sign of its quaternion, for q and -q are the same."""
+    signs = [(1, -1) if part.quaternion else (1,) for part in parts.values()]
+    return [
+        {
+            _place(name, part, index): _Wrong(sign * got[name][index], expected[name][index])
+            for sign, (name, part) in zip(chosen, parts.items())
+            for index in np.ndindex(got[name].shape)
+            if abs(sign * got[name][index] - expected[name][index]) > TOLERANCE * max(1.0, abs(expected[name][index]))
+        }
+        for chosen in product(*signs)
+    ]
 
 
 def _place(name, part, index):
+    """Where a number stands in an answer, in words."""
     if len(index) == 2:
         return f"row {index[0] + 1}, column {index[1] + 1} (`[{index[0]}, {index[1]}]` in NumPy)"
     if part.unit == "m" or part.quaternion:
-        return f"the {name}'s {'xyzw'[index[0]]}"
+        return f"{'xyzw'[index[0]]} of the {name}"
     return f"number {index[0] + 1} of the {name}"
