@@ -433,7 +433,10 @@ def test_a_verdict_is_right_only_with_all_the_credit():
         ("transform_to_pose", Pose, "the class Pose itself, without parentheses, instead of a Pose"),
         ("transform_to_pose", Pose(Point(None, 0, 0), Quaternion()), "0 of 4 points"),
         ("transform_point", (1.0, 2.0, None), "a tuple with None in it instead of an array of 3 coordinates"),
-        ("transform_point", (1.0, 2.0), "an array of shape (2,) instead of an array of 3 coordinates"),
+        ("transform_point", (1.0, 2.0), "a tuple of shape (2,) instead of an array of 3 coordinates"),
+        ("transform_point", np.ones(2), "an array of shape (2,) instead of an array of 3 coordinates"),
+        ("transform_point", [[1, 2], [3, 4]], "a list of shape (2, 2) instead of an array of 3 coordinates"),
+        ("transform_point", 0.5, "a float instead of an array of 3 coordinates"),
         ("transform_point", {1.0, 2.0}, "a set instead of an array of 3 coordinates"),
         ("make_transform", [[1.0, 0.0], [0.0]], "a list of rows that differ in length instead of a 4x4 array"),
         ("make_transform", [["1", 0.0], [0.0, 1.0]], "a list with a str in it instead of a 4x4 array"),
@@ -477,6 +480,17 @@ def test_messages_name_no_notebook_that_the_reader_is_in():
             for misconception in key_of(name)["misconceptions"]:
                 told = f"{misconception['says']} {misconception['hint']}"
                 assert not re.search(rf"\bnotebook {notebook[0]}\b", told, re.I), (name, told)
+
+
+@pytest.mark.parametrize("answer", [None, np.eye(3), "text"])
+def test_in_how_many_cases_an_answer_was_none(answer):
+    """A path without a return, or with another one, is not the whole function."""
+
+    def sometimes(a_T_b, p_in_b):
+        return EXERCISES["transform_point"].reference(a_T_b, p_in_b) if a_T_b[0, 3] <= 0 else answer
+
+    assert re.search(r" in \d+ of \d+ cases", judged("transform_point", sometimes).says)
+    assert " cases" not in judged("transform_point", lambda a_T_b, p_in_b: answer).says
 
 
 # --- arguments that are changed --------------------------------------------------------------------------------------
