@@ -3,7 +3,7 @@
 from functools import reduce
 
 import numpy as np
-from transform_lab.judging.diagnosis import together
+from transform_lab.judging.naming import together
 
 from .cases import (
     almost_half_turns,
