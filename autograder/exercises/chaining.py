@@ -10,7 +10,6 @@ from .cases import (
     generic_pose,
     generic_transform,
     half_turn,
-    large_turn,
     matrix,
     near_half_turn,
     orientation,
@@ -26,16 +25,14 @@ from .cases import (
     vector,
     wide_turn,
 )
+from .conversions import BEYOND_120, BY_TRACE, ORDERS, from_euler
 from .equivalent import MAKING_A_POSE, READING_A_POSE
 from .homogeneous_transforms import (
     BOTTOM_ROW,
-    BREAKS_AT_HALF_TURN,
     ENTRY_BY_ENTRY,
     NO_ORIENTATION,
-    ORDERS,
     QUATERNION_ORDER,
-    from_euler,
-    trace_formula_guarded,
+    open_where,
 )
 from .specification import Case, Exercise, Misconception
 
@@ -414,11 +411,14 @@ TRANSFORM_POSE = Exercise(
             lambda a_T_b, pose_in_b: _as_pose(matrix(pose_in_b) @ np.linalg.inv(a_T_b)),
             *together(FROM_A_TO_B, THE_WRONG_WAY_ROUND),
         ),
-        Misconception(
-            "trace-formula-only",
-            _with_orientation(lambda T, p: trace_formula_guarded(T @ matrix(p))),
-            *BREAKS_AT_HALF_TURN,
-            varies=lambda T, p: ("orientation",) if large_turn((T @ matrix(p))[:3, :3]) else (),
+        *(
+            Misconception(
+                identifier,
+                _with_orientation(lambda T, p, wrong=wrong: wrong(T @ matrix(p))),
+                *says,
+                **open_where(varies, fails, lambda T, p: T @ matrix(p)),
+            )
+            for identifier, says, wrong, varies, fails in (BY_TRACE, BEYOND_120)
         ),
         Misconception(
             "quaternions-added",

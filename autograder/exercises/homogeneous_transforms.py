@@ -9,10 +9,8 @@ from transform_lab.judging.diagnosis import together
 from .cases import (
     either_sign,
     half_turn,
-    large_turn,
     matrix,
     near_half_turn,
-    off_diagonal,
     orientation,
     pose,
     pose_of,
@@ -28,7 +26,22 @@ from .cases import (
     vector,
     wide_turn,
     with_bottom_row,
-    x_axis_upright,
+)
+from .conversions import (
+    BEYOND_120,
+    BREAKS_AT_HALF_TURN,
+    BY_ANGLES,
+    BY_BRANCHES,
+    BY_TRACE,
+    ORDERS,
+    angle_not_halved,
+    axis_and_angle,
+    from_euler,
+    half_turn_by_tolerance,
+    lengths_with_signs,
+    trace_formula,
+    trace_formula_guarded,
+    trace_formula_in_plain_python,
 )
 from .equivalent import LISTS, MAKING_A_POSE, READING_A_POSE
 from .rotation import TRUNCATED
@@ -291,76 +304,22 @@ def _to_pose_with(position=None, orientation=None):
     return wrong
 
 
-def _trace_formula(matrix):
-    w = np.sqrt(1.0 + np.trace(matrix[:3, :3])) / 2.0
-    return np.append(off_diagonal(matrix) / (4.0 * w), w)
-
-
-def _trace_formula_in_plain_python(matrix):
-    w = math.sqrt(1.0 + float(np.trace(matrix[:3, :3]))) / 2.0
-    return [float(difference) / (4.0 * w) for difference in off_diagonal(matrix)] + [w]  # raises at a half turn
-
-
-def trace_formula_guarded(matrix):
-    return _trace_formula(matrix) if np.trace(matrix[:3, :3]) > -1.0 + 1e-9 else np.array([0.0, 0.0, 0.0, 1.0])
-
-
-def _half_turn_by_tolerance(matrix):
-    """Right for every half turn, and takes some for one that are none."""
-    q = quaternion(matrix[:3, :3])
-    return np.append(q[:3], 0.0) if np.isclose(np.trace(matrix[:3, :3]), -1.0) else q
-
-
-def _lengths_with_signs(signs):
-    """The components' sizes from the diagonal, and the signs of x, y, z from `signs(sizes, differences)`."""
-
-    def wrong(matrix):
-        a, b, c = np.diag(matrix)[:3]
-        squares = np.array([1 + a - b - c, 1 - a + b - c, 1 - a - b + c, 1 + a + b + c])
-        sizes = np.sqrt(np.maximum(squares, 0.0)) / 2.0
-        return np.append(signs(sizes[:3], off_diagonal(matrix)), sizes[3])
-
-    return wrong
-
-
-def _axis_and_angle(matrix):
-    """The axis from the differences off the diagonal; 0/0 without a rotation, a zero vector at a half turn."""
-    angle = np.arccos(np.clip((np.trace(matrix[:3, :3]) - 1.0) / 2.0, -1.0, 1.0))
-    axis = off_diagonal(matrix) / (2.0 * np.sin(angle))
-    return np.append(axis * np.sin(angle / 2.0), np.cos(angle / 2.0))
-
-
-def _angle_not_halved(matrix):
-    rotation_vector = Rotation.from_matrix(matrix[:3, :3]).as_rotvec()
-    angle = np.linalg.norm(rotation_vector)
-    axis = rotation_vector / angle if angle > 0 else rotation_vector
-    return np.append(axis * np.sin(angle), np.cos(angle))
-
-
 _transposed = _to_pose_with(orientation=lambda matrix: quaternion(matrix[:3, :3].T))
 
 
-def _of_large_turns(matrix):
-    """The part in which formulas differ that are right while the trace is positive."""
-    return ("orientation",) if large_turn(matrix[:3, :3]) else ()
-
-
-def plain_angles(matrix):
-    """Roll, pitch and yaw as textbooks have them, without a thought of gimbal lock."""
-    pitch = math.asin(np.clip(-matrix[2, 0], -1.0, 1.0))
-    return math.atan2(matrix[2, 1], matrix[2, 2]), pitch, math.atan2(matrix[1, 0], matrix[0, 0])
+def open_where(varies, fails, matrix_of, parts=("orientation",)):
+    """The fields `varies` and `fails` of a misconception about these parts: two functions of a rotation, which is the upper
+    left of `matrix_of` the arguments.
+    """
+    return {
+        name: lambda *args, where=where, **kwargs: parts if where(matrix_of(*args, **kwargs)[:3, :3]) else ()
+        for name, where in (("varies", varies), ("fails", fails))
+    }
 
 
 def _read_as(order, matrix):
     """The quaternion's four numbers in another order."""
     return quaternion(matrix[:3, :3])[order]
-
-
-ORDERS = ([3, 0, 1, 2], [1, 2, 3, 0], [3, 2, 1, 0])
-
-
-def from_euler(angles, axes="xyz"):
-    return Rotation.from_euler(axes, angles).as_quat()
 
 
 def _yaw_alone(matrix):
@@ -374,11 +333,6 @@ QUATERNION_ORDER = (
 QUATERNION_TURNED = (
     "The orientation is the opposite turn: the rotation was transposed, or the quaternion conjugated.",
     "Check it with Example 1: for a turn by +45 degrees about z, which sign has z when w is positive?",
-)
-BREAKS_AT_HALF_TURN = (
-    "The quaternion goes wrong at or near a half turn.",
-    "Your formula divides by w, or takes signs from differences, and both vanish at a half turn. "
-    "A library function knows those cases.",
 )
 NO_ORIENTATION = (
     "The orientation was never set: it is 0, 0, 0, 0, which is no orientation at all.",
@@ -455,28 +409,21 @@ TRANSFORM_TO_POSE = Exercise(
             )
             for order in ORDERS
         ),
-        Misconception(
-            "trace-formula-only",
-            _to_pose_with(orientation=trace_formula_guarded),
-            *BREAKS_AT_HALF_TURN,
-            varies=_of_large_turns,
+        *(
+            Misconception(
+                identifier, _to_pose_with(orientation=wrong), *says, **open_where(varies, fails, lambda matrix: matrix)
+            )
+            for identifier, says, wrong, varies, fails in (BY_TRACE, BEYOND_120, BY_ANGLES, *BY_BRANCHES)
         ),
         Misconception(
             "trace-formula-only;rotation-transposed",
             _to_pose_with(orientation=lambda matrix: trace_formula_guarded(matrix.T)),
             *together(BREAKS_AT_HALF_TURN, QUATERNION_TURNED),
-            varies=_of_large_turns,
-        ),
-        Misconception(
-            "gimbal-lock",
-            _to_pose_with(orientation=lambda matrix: from_euler(plain_angles(matrix))),
-            "The orientation goes wrong where B's x axis points straight up or down.",
-            "Roll and yaw cannot be told apart there, whatever the formula: a quaternion does not need them.",
-            varies=lambda matrix: ("orientation",) if x_axis_upright(matrix[:3, :3]) else (),
+            **open_where(*BY_TRACE[-2:], lambda matrix: matrix),
         ),
         Misconception(
             "wrong-sign",
-            _to_pose_with(orientation=_lengths_with_signs(lambda sizes, differences: sizes)),
+            _to_pose_with(orientation=lengths_with_signs(lambda sizes, differences: sizes)),
             "The quaternion's x, y and z are never negative.",
             "A square root gives the size of a number; where do the signs come from?",
         ),
@@ -504,12 +451,12 @@ TRANSFORM_TO_POSE = Exercise(
         *(
             Misconception("trace-formula-only", _to_pose_with(orientation=orientation), *BREAKS_AT_HALF_TURN)
             for orientation in (
-                _trace_formula,
-                _trace_formula_in_plain_python,
-                _half_turn_by_tolerance,
-                _lengths_with_signs(np.copysign),
-                _lengths_with_signs(lambda sizes, differences: sizes * np.sign(differences)),
-                _axis_and_angle,
+                trace_formula,
+                trace_formula_in_plain_python,
+                half_turn_by_tolerance,
+                lengths_with_signs(np.copysign),
+                lengths_with_signs(lambda sizes, differences: sizes * np.sign(differences)),
+                axis_and_angle,
             )
         ),
         Misconception("position-missing", _to_pose_with(position=lambda matrix: (0, 0, 0)), *POSITION_LEFT_OUT),
@@ -552,7 +499,7 @@ TRANSFORM_TO_POSE = Exercise(
         ),
         Misconception(
             "angle-not-halved",
-            _to_pose_with(orientation=_angle_not_halved),
+            _to_pose_with(orientation=angle_not_halved),
             *WHOLE_ANGLE,
         ),
     ),

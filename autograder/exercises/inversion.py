@@ -8,7 +8,6 @@ from .cases import (
     from_roll_pitch_yaw,
     generic_transform,
     half_turn,
-    large_turn,
     off_diagonal,
     roll_pitch_yaw,
     rotation,
@@ -21,7 +20,8 @@ from .cases import (
     wide_turn,
     with_bottom_row,
 )
-from .homogeneous_transforms import BOTTOM_ROW, ENTRY_BY_ENTRY, YAW_ALONE
+from .conversions import BY_TRACE
+from .homogeneous_transforms import BOTTOM_ROW, ENTRY_BY_ENTRY, YAW_ALONE, open_where
 from .rotation import TRUNCATED
 from .specification import Case, Exercise, Misconception
 
@@ -116,7 +116,7 @@ INVERT_TRANSFORM = Exercise(
             _by_axis_and_angle,
             "Your inverse goes wrong at or near a half turn.",
             "Axis and angle cannot be read off the matrix's differences there. Turning back needs neither.",
-            varies=lambda a_T_b: ("rotation", "translation") if large_turn(a_T_b[:3, :3]) else (),
+            **open_where(*BY_TRACE[-2:], lambda a_T_b: a_T_b, ("rotation", "translation")),
         ),
         Misconception("integer-truncation", lambda a_T_b: np.trunc(invert_transform(a_T_b)), *TRUNCATED),
         Misconception(

@@ -10,7 +10,6 @@ from transform_lab.judging.diagnosis import together
 from .cases import (
     either_sign,
     from_roll_pitch_yaw,
-    large_turn,
     matrix,
     near_half_turn,
     orientation,
@@ -28,17 +27,9 @@ from .cases import (
     wide_turn,
     x_axis_upright,
 )
+from .conversions import BEYOND_120, BY_ANGLES, BY_TRACE, ORDERS
 from .equivalent import MAKING_A_POSE, READING_A_POSE, UPPER_LEFT
-from .homogeneous_transforms import (
-    BREAKS_AT_HALF_TURN,
-    ENTRY_BY_ENTRY,
-    NO_ORIENTATION,
-    ORDERS,
-    QUATERNION_ORDER,
-    from_euler,
-    plain_angles,
-    trace_formula_guarded,
-)
+from .homogeneous_transforms import ENTRY_BY_ENTRY, NO_ORIENTATION, QUATERNION_ORDER, open_where
 from .specification import Case, Exercise, Misconception
 
 LAB_OBJECT = pose_of((0.6, -0.1, 0.7), (0.0, 0.0, 0.38268343, 0.92387953))  # the lab's, as printed there
@@ -199,18 +190,14 @@ SHARED: tuple[Misconception, ...] = (
         _moved(lambda p, R, offset: p - R.T @ offset),
         *together(TURNED_BACK, OPPOSITE_SIDE),
     ),
-    Misconception(
-        "trace-formula-only",
-        _moved(_right_position, lambda object_pose: trace_formula_guarded(matrix(object_pose))),
-        *BREAKS_AT_HALF_TURN,
-        _open("orientation", large_turn),
-    ),
-    Misconception(
-        "gimbal-lock",
-        _moved(_right_position, lambda object_pose: from_euler(plain_angles(matrix(object_pose)))),
-        "The orientation goes wrong where the object's x axis points straight up or down.",
-        "Roll and yaw cannot be told apart there, whatever the formula. Copy the object's quaternion instead.",
-        _open("orientation", x_axis_upright),
+    *(
+        Misconception(
+            identifier,
+            _moved(_right_position, lambda object_pose, wrong=wrong: wrong(matrix(object_pose))),
+            *says,
+            **open_where(varies, fails, lambda object_pose, offset: matrix(object_pose)),
+        )
+        for identifier, says, wrong, varies, fails in (BY_TRACE, BEYOND_120, BY_ANGLES)
     ),
     Misconception(
         "position-missing",
@@ -320,6 +307,7 @@ PRE_GRASP = Exercise(
                 shared,
                 wrong=_behind(shared.wrong),
                 varies=_behind(shared.varies),
+                fails=_behind(shared.fails),
                 **(UPSIDE_DOWN if shared.wrong is _back_to_front else {}),
             )
             for shared in SHARED

@@ -5,6 +5,7 @@ the diagnosis in feedback and report, and the tests that prove the grader.
 """
 
 import pickle
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from inspect import signature
@@ -22,6 +23,8 @@ PUBLIC_SEED = 24  # the cases students see; any other seed draws hidden ones
 ORDER = 1  # with the seed, what the order of the cases is drawn from
 DIGITS = 12  # decimals kept of arguments and right answers: far below the tolerance of 1e-6
 DIGITS_WRONG = 8  # of wrong answers, which are most of the key
+SHORT = 40  # characters of an answer that is no longer than what could be said of it
+KEPT = 2  # wrong answers of a misconception in each family of cases: of the others the key says which parts are wrong
 PROTOCOL = 4  # of pickle; from 5 on, arrays do not own their numbers
 
 
@@ -44,6 +47,8 @@ class Misconception:
     hint: str  # helps without giving the solution away
     # From the arguments to the parts of the answer that hang on how exactly it is computed: others answer otherwise.
     varies: Callable = lambda *args, **kwargs: ()
+    # …and to those that are wrong however it is computed: without them, what is left open could be anybody's.
+    fails: Callable = lambda *args, **kwargs: ()
 
 
 @dataclass(frozen=True)
@@ -91,6 +96,9 @@ def key(exercise: Exercise, seed: int) -> PlainExercise:
     as the specification has them.
     """
     cases = exercise.cases(np.random.default_rng(seed))
+    plain = [_case(exercise, case) for case in cases]
+    for index in range(len(exercise.misconceptions)):
+        _shorten(exercise.returns, plain, index)
     order = range(len(cases)) if seed == PUBLIC_SEED else np.random.default_rng([seed, ORDER]).permutation(len(cases))
     return {
         "parameters": [str(p).partition("=")[0] for p in signature(exercise.reference).parameters.values()],
@@ -99,7 +107,7 @@ def key(exercise: Exercise, seed: int) -> PlainExercise:
         "credit": exercise.credit,
         "weights": {case.family: exercise.weights.get(case.family, 1) for case in cases},
         "misconceptions": [{"id": m.id, "says": m.says, "hint": m.hint} for m in exercise.misconceptions],
-        "cases": [_case(exercise, cases[number]) for number in order],
+        "cases": [plain[number] for number in order],
     }
 
 
@@ -132,7 +140,7 @@ def _case(exercise: Exercise, case: Case) -> PlainCase:
     expected = _answer(exercise.reference, fresh)
     right = _parts_of_the_right(exercise, case, expected)
     given, named = fresh()
-    wrong = [_wrong_answer(m, m.varies(*given, **named), fresh) for m in exercise.misconceptions]
+    wrong = [_wrong_answer(m, given, named, fresh) for m in exercise.misconceptions]
     return {
         "family": case.family,
         "args": args,
@@ -154,11 +162,38 @@ def _parts_of_the_right(exercise, case, expected):
         raise ValueError(f"{where} is {unfit}") from unfit
 
 
-def _wrong_answer(misconception, open_parts, fresh):
-    answer = {"any": list(open_parts)} if open_parts else _answer(misconception.wrong, fresh)
+def _wrong_answer(misconception, args, kwargs, fresh):
+    if wrong_parts := misconception.fails(*args, **kwargs):
+        return {"not": list(wrong_parts)}
+    if open_parts := misconception.varies(*args, **kwargs):
+        return {"any": list(open_parts)}
+    answer = _answer(misconception.wrong, fresh)
     if answer is None:  # which would stand for a right answer in the key
         raise ValueError(f"{misconception.id}: to return None is a misconception of every exercise already")
     return answer
+
+
+def _shorten(returns, cases, index):
+    """Keep the first KEPT answers of a misconception in each family, and of the others which of their parts are wrong.
+
+    A dozen answers with all their numbers tell a misconception from all others; all of them would be most of the key.
+    """
+    parts, kept = KINDS[returns].parts, Counter()
+    for case in cases:
+        wrong = case["wrong"][index]
+        if len(str(wrong)) < SHORT or error_of(wrong) or open_parts_of(wrong):
+            continue
+        kept[case["family"]] += 1
+        if kept[case["family"]] <= KEPT:
+            continue
+        right = parts_of(returns, codec.decode(case["expected"]))
+        try:
+            answer = parts_of(returns, codec.decode(wrong))
+        except Unfit:
+            continue
+        case["wrong"][index] = {
+            "not": [name for name, part in parts.items() if not part.agree(answer[name], right[name])]
+        }
 
 
 def _right(returns, answer, right):

@@ -153,27 +153,30 @@ def together(*messages: tuple[str, str]) -> tuple[str, str]:
 def _fit(index, exercise, replies, outcomes):
     """How well a misconception explains the answers.
 
-    0: not. 2: they equal its own wherever it differs from the right one, and are right elsewhere. 1: so they do, where
-    its own are not open. Less: it is open wherever it differs, and this share of these cases is wrong (a single wrong
-    one proves nothing).
+    0: not. 3: they equal its own wherever it differs from the right one, and are right elsewhere. 2: so they do, where
+    its own are not open. 1: none of its own is told, but they are wrong wherever it has to be, and right wherever it is.
     """
-    differs, open_cases, wrong_there = False, 0, 0
+    parts = set(KINDS[exercise["returns"]].parts)
+    fails = equals = is_open = False
     for case, reply, outcome in zip(exercise["cases"], replies, outcomes):
         wrong = case["wrong"][index]
         if wrong is None:
             if not outcome.answered:
                 return 0
         elif open_parts := open_parts_of(wrong):
-            open_cases, wrong_there = open_cases + 1, wrong_there + (not outcome.answered)
-            if not _broke_down(outcome) and not set(KINDS[exercise["returns"]].parts) - open_parts <= outcome.parts:
+            if not _broke_down(outcome) and not parts - open_parts <= outcome.parts:
                 return 0
+            if not has_to_be_wrong(wrong):
+                is_open = True
+            elif open_parts & outcome.parts:
+                return 0
+            else:
+                fails = True
+        elif outcome.answered or not _equals(wrong, exercise["returns"], reply, outcome):
+            return 0
         else:
-            differs = True
-            if outcome.answered or not _equals(wrong, exercise["returns"], reply, outcome):
-                return 0
-    if differs:
-        return 1 if open_cases else 2
-    return wrong_there / open_cases if wrong_there > 1 else 0
+            equals = True
+    return (2 if is_open else 3) if equals else int(fails)
 
 
 def _equals(wrong, returns, reply, outcome):
@@ -196,8 +199,15 @@ def error_of(wrong):
 
 
 def open_parts_of(wrong):
-    """The parts of the answer that may be anything, where a misconception's answer hangs on how it is computed."""
-    return set(wrong.get("any", ())) if isinstance(wrong, dict) else set()
+    """The parts of a misconception's answer whose numbers the key does not tell: they hang on how they are computed, or
+    there are enough others.
+    """
+    return set(wrong.get("any", wrong.get("not", ()))) if isinstance(wrong, dict) else set()
+
+
+def has_to_be_wrong(wrong):
+    """Whether the parts whose numbers the key does not tell are wrong, each of them; else they may be anything."""
+    return isinstance(wrong, dict) and "not" in wrong
 
 
 def _general(problems, replies, tell):
@@ -221,6 +231,8 @@ def _general(problems, replies, tell):
 
 
 # --- two mistakes at once -------------------------------------------------------------------------------------------
+
+WRONG = object()  # a part of an answer of which the key tells that it is wrong, and no more
 
 
 def _part_by_part(exercise, outcomes):
@@ -252,10 +264,11 @@ def _partial_explanations(exercise, outcomes):
             name
             for answer, right in zip(wrong, expected)
             for name, part in parts.items()
-            if answer[name] is None or not part.agree(answer[name], right[name])
+            if answer[name] is None or answer[name] is WRONG or not part.agree(answer[name], right[name])
         )
         if touched and all(
-            answer[name] is None or parts[name].agree(outcome.got[name], answer[name])
+            answer[name] is None
+            or (name not in outcome.parts if answer[name] is WRONG else parts[name].agree(outcome.got[name], answer[name]))
             for outcome, answer in zip(outcomes, wrong)
             for name in touched
         ):
@@ -271,7 +284,7 @@ def _partial_explanations(exercise, outcomes):
 
 
 def _parts_of_misconception(index, exercise, expected):
-    """This misconception's answers, each as its parts, None for one that may be anything.
+    """This misconception's answers, each as its parts, None for one that may be anything, WRONG for one that is not right.
 
     Nothing when one of the answers cannot be taken apart.
     """
@@ -281,7 +294,8 @@ def _parts_of_misconception(index, exercise, expected):
         if error_of(wrong):
             return []
         if open_parts := open_parts_of(wrong):
-            answers.append({part: None if part in open_parts else value for part, value in right.items()})
+            untold = WRONG if has_to_be_wrong(wrong) else None
+            answers.append({part: untold if part in open_parts else value for part, value in right.items()})
             continue
         try:
             answers.append(right if wrong is None else parts_of(exercise["returns"], codec.decode(wrong)))

@@ -10,8 +10,9 @@ class PlainCase(TypedDict):
 
     family: which kind of case it is, in a student's words
     wrong: what each misconception of the exercise would answer: null where it happens to be right, {"raises": name of the
-        exception} where it raises, {"any": parts of the answer} where these may be anything; left out where only right
-        answers are told (public_example.py)
+        exception} where it raises, {"any": parts of the answer} where these may be anything, {"not": parts of the answer} where
+        each of these is wrong, whatever it is, and the others are right; left out where only right answers are told
+        (public_example.py)
     """
 
     family: str
