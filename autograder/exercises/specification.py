@@ -12,19 +12,19 @@ from inspect import signature
 
 import numpy as np
 from transform_lab.judging import codec
-from transform_lab.judging.answers import is_right, parts_of
+from transform_lab.judging.answers import parts_of
 from transform_lab.judging.comparison import frames_of
-from transform_lab.judging.diagnosis import error_of, open_parts_of
+from transform_lab.judging.diagnosis import error_of
 from transform_lab.judging.kinds import KINDS
 from transform_lab.judging.plain import PlainCase, PlainExercise
 from transform_lab.judging.reading import Unfit
 
 PUBLIC_SEED = 24  # the cases students see; any other seed draws hidden ones
 ORDER = 1  # with the seed, what the order of the cases is drawn from
-DIGITS = 12  # decimals kept of arguments and right answers: far below the tolerance of 1e-6
-DIGITS_WRONG = 8  # of wrong answers, which are most of the key
-SHORT = 40  # characters of an answer that is no longer than what could be said of it
-KEPT = 2  # wrong answers of a misconception in each family of cases: of the others the key says which parts are wrong
+DIGITS_OF_ARGUMENTS = 15  # decimals: nearly all there are, without the noise that sines and products leave at zero
+DIGITS = 12  # of right answers: far below the tolerance of 1e-6
+DIGITS_WRONG = 7  # of wrong ones, which are most of the key
+KEPT = 2  # answers of a misconception in each family of cases: of the others the key says no more than which parts are wrong
 PROTOCOL = 4  # of pickle; from 5 on, arrays do not own their numbers
 
 
@@ -47,7 +47,7 @@ class Misconception:
     hint: str  # helps without giving the solution away
     # From the arguments to the parts of the answer that hang on how exactly it is computed: others answer otherwise.
     varies: Callable = lambda *args, **kwargs: ()
-    # …and to those that are wrong however it is computed: without them, what is left open could be anybody's.
+    # …and to those that are wrong however it is computed: without any, what is left open could be anybody's.
     fails: Callable = lambda *args, **kwargs: ()
 
 
@@ -98,7 +98,7 @@ def key(exercise: Exercise, seed: int) -> PlainExercise:
     cases = exercise.cases(np.random.default_rng(seed))
     plain = [_case(exercise, case) for case in cases]
     for index in range(len(exercise.misconceptions)):
-        _shorten(exercise.returns, plain, index)
+        _shorten(plain, index)
     order = range(len(cases)) if seed == PUBLIC_SEED else np.random.default_rng([seed, ORDER]).permutation(len(cases))
     return {
         "parameters": [str(p).partition("=")[0] for p in signature(exercise.reference).parameters.values()],
@@ -134,20 +134,20 @@ class Arguments:
 
 
 def _case(exercise: Exercise, case: Case) -> PlainCase:
-    args = [_rounded(codec.encode(arg)) for arg in case.args]
-    kwargs = {name: _rounded(codec.encode(arg)) for name, arg in case.kwargs.items()}
+    args = [_rounded(codec.encode(arg), DIGITS_OF_ARGUMENTS) for arg in case.args]
+    kwargs = {name: _rounded(codec.encode(arg), DIGITS_OF_ARGUMENTS) for name, arg in case.kwargs.items()}
     fresh = Arguments(args, kwargs).fresh
     expected = _answer(exercise.reference, fresh)
     right = _parts_of_the_right(exercise, case, expected)
     given, named = fresh()
-    wrong = [_wrong_answer(m, given, named, fresh) for m in exercise.misconceptions]
     return {
         "family": case.family,
         "args": args,
         "kwargs": kwargs,
         "expected": expected,
         "wrong": [
-            None if _right(exercise.returns, answer, right) else _rounded(answer, DIGITS_WRONG) for answer in wrong
+            _untold(misconception, given, named) or _wrong_answer(exercise.returns, misconception, fresh, right)
+            for misconception in exercise.misconceptions
         ],
     }
 
@@ -162,42 +162,41 @@ def _parts_of_the_right(exercise, case, expected):
         raise ValueError(f"{where} is {unfit}") from unfit
 
 
-def _wrong_answer(misconception, args, kwargs, fresh):
+def _untold(misconception, args, kwargs):
+    """What the key says of an answer that hangs on how exactly it is computed; None where it does not."""
     if wrong_parts := misconception.fails(*args, **kwargs):
         return {"not": list(wrong_parts)}
     if open_parts := misconception.varies(*args, **kwargs):
         return {"any": list(open_parts)}
-    answer = _answer(misconception.wrong, fresh)
-    if answer is None:  # which would stand for a right answer in the key
-        raise ValueError(f"{misconception.id}: to return None is a misconception of every exercise already")
-    return answer
+    return None
 
 
-def _shorten(returns, cases, index):
-    """Keep the first KEPT answers of a misconception in each family, and of the others which of their parts are wrong.
+def _shorten(cases, index):
+    """Keep the first answers of a misconception in each family, and of the others which of their parts are wrong.
 
     A dozen answers with all their numbers tell a misconception from all others; all of them would be most of the key.
     """
-    parts, kept = KINDS[returns].parts, Counter()
+    kept = Counter()
     for case in cases:
-        wrong = case["wrong"][index]
-        if len(str(wrong)) < SHORT or error_of(wrong) or open_parts_of(wrong):
-            continue
-        kept[case["family"]] += 1
-        if kept[case["family"]] <= KEPT:
-            continue
-        right = parts_of(returns, codec.decode(case["expected"]))
-        try:
-            answer = parts_of(returns, codec.decode(wrong))
-        except Unfit:
-            continue
-        case["wrong"][index] = {
-            "not": [name for name, part in parts.items() if not part.agree(answer[name], right[name])]
-        }
+        wrong = case["wrong"][index] or {}
+        kept[case["family"]] += "parts" in wrong
+        if "parts" in wrong and kept[case["family"]] > KEPT:
+            case["wrong"][index] = {"not": list(wrong["parts"])}
 
 
-def _right(returns, answer, right):
-    return not error_of(answer) and not open_parts_of(answer) and is_right(returns, codec.decode(answer), right)
+def _wrong_answer(returns, misconception, fresh, right):
+    """The answer of a misconception as the key has it; see PlainCase."""
+    answer = _answer(misconception.wrong, fresh)
+    if answer is None:
+        raise ValueError(f"{misconception.id}: to return None is a misconception of every exercise already")
+    if error_of(answer):
+        return answer
+    try:
+        got = parts_of(returns, codec.decode(answer))
+    except Unfit:
+        return {"unfit": _rounded(answer, DIGITS_WRONG)}
+    wrong = [name for name, part in KINDS[returns].parts.items() if not part.agree(got[name], right[name])]
+    return {"parts": {name: _rounded(got[name].ravel().tolist(), DIGITS_WRONG) for name in wrong}} if wrong else None
 
 
 def _answer(function, fresh):

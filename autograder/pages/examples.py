@@ -51,9 +51,11 @@ def knows(name, identifier):
 
 def _committed(name, identifier):
     """The Verdict on the public cases of who has the misconception; its first wrong answer is the one to show."""
-    wrong = next(each.wrong for each in EXERCISES[name].misconceptions if each.id == identifier)
-    with np.errstate(all="ignore"):  # wrong implementations divide by zero
-        return examine(name, _public(name), lambda args, kwargs: call(wrong, args, kwargs))
+    exercise = _public(name)
+    index = [misconception["id"] for misconception in exercise["misconceptions"]].index(identifier)
+    wrong = EXERCISES[name].misconceptions[index].wrong
+    with np.errstate(all="ignore"):
+        return examine(name, exercise, lambda args, kwargs: call(wrong, args, kwargs))
 
 
 @cache

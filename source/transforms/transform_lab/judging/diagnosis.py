@@ -14,9 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 from . import codec
-from .answers import made_of, parts_of, same
+from .answers import parts_of, same
 from .kinds import KINDS, TOLERANCE
-from .reading import Unfit
 
 # Failures that any exercise can have: what the answer shows, and what helps.
 GENERAL = {
@@ -183,14 +182,24 @@ def _equals(wrong, returns, reply, outcome):
     if raises := error_of(wrong):
         return reply.outcome == "raised" and reply.error.partition(":")[0] == raises
     if outcome.got is None:
-        return reply.outcome == "returned" and same(returns, reply.value, wrong)
-    return made_of(returns, outcome.got, codec.decode(wrong))
+        return reply.outcome == "returned" and "unfit" in wrong and same(returns, reply.value, wrong["unfit"])
+    return "parts" in wrong and all(
+        part.agree(outcome.got[name], numbers_of(wrong["parts"][name], outcome.got[name]))
+        if name in wrong["parts"]
+        else name in outcome.parts
+        for name, part in KINDS[returns].parts.items()
+    )
 
 
 def _broke_down(outcome):
     """Whether a formula came to its end: NaN came out, or arithmetic raised an error."""
     identifier, what = outcome.problem or (None, "")
     return identifier == "not-finite" or (identifier == "" and re.match(NO_NUMBER, what) is not None)
+
+
+def numbers_of(flat, like):
+    """A part of a wrong answer in the key, as an array of the shape of `like`."""
+    return np.array(flat).reshape(like.shape)
 
 
 def error_of(wrong):
@@ -268,7 +277,11 @@ def _partial_explanations(exercise, outcomes):
         )
         if touched and all(
             answer[name] is None
-            or (name not in outcome.parts if answer[name] is WRONG else parts[name].agree(outcome.got[name], answer[name]))
+            or (
+                name not in outcome.parts
+                if answer[name] is WRONG
+                else parts[name].agree(outcome.got[name], answer[name])
+            )
             for outcome, answer in zip(outcomes, wrong)
             for name in touched
         ):
@@ -297,10 +310,10 @@ def _parts_of_misconception(index, exercise, expected):
             untold = WRONG if has_to_be_wrong(wrong) else None
             answers.append({part: untold if part in open_parts else value for part, value in right.items()})
             continue
-        try:
-            answers.append(right if wrong is None else parts_of(exercise["returns"], codec.decode(wrong)))
-        except Unfit:
+        if wrong is not None and "unfit" in wrong:
             return []
+        changed = {} if wrong is None else wrong["parts"]
+        answers.append(right | {name: numbers_of(flat, right[name]) for name, flat in changed.items()})
     return answers
 
 
