@@ -1,8 +1,10 @@
 """The exercises of notebook 3: chains of transforms, and a pose in another frame."""
 
 from functools import reduce
+from itertools import pairwise
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 from transform_lab.judging.diagnosis import together
 
 from .cases import (
@@ -25,13 +27,14 @@ from .cases import (
     vector,
     wide_turn,
 )
-from .conversions import BEYOND_120, BY_TRACE, ORDERS, from_euler
+from .conversions import BEYOND_120, BY_TRACE, ORDERS, from_euler, near_half_turns, product, rotation_vector
 from .equivalent import MAKING_A_POSE, READING_A_POSE
 from .homogeneous_transforms import (
     BOTTOM_ROW,
     ENTRY_BY_ENTRY,
     NO_ORIENTATION,
     QUATERNION_ORDER,
+    at_lock,
     open_where,
 )
 from .specification import Case, Exercise, Misconception
@@ -73,6 +76,51 @@ def _with_rotation(of):
     return lambda *transforms: transform(of([T[:3, :3] for T in transforms]), sum(T[:3, 3] for T in transforms))
 
 
+def _pairs(transforms, alone):
+    """`chain` of someone for whom a single transform is something else."""
+    return chain(*transforms) if len(transforms) > 1 else alone
+
+
+def _alone(error):
+    """`chain` that raises an error for a single transform."""
+
+    def wrong(*transforms):
+        if len(transforms) == 1:
+            raise error
+        return chain(*transforms)
+
+    return wrong
+
+
+def _in_pairs(*transforms):
+    """Multiplied two by two until one is left; one that has no partner is lost."""
+    row = list(transforms)
+    while len(row) > 1:
+        row = [first @ second for first, second in zip(row[::2], row[1::2])]
+    return row[0]
+
+
+def _rotation_first(*transforms):
+    R, p = np.eye(3), np.zeros(3)
+    for T in transforms:
+        R = R @ T[:3, :3]
+        p = p + R @ T[:3, 3]
+    return transform(R, p)
+
+
+def _translation_last(*transforms):
+    """From the last link on, each translation turned by the rotation of the link that it belongs to."""
+    R, p = np.eye(3), np.zeros(3)
+    for T in reversed(transforms):
+        R = T[:3, :3] @ R
+        p = T[:3, 3] + R @ p
+    return transform(R, p)
+
+
+ALONE = (
+    "Your function goes wrong for a single transform.",
+    "A chain can have one link only: what is its last frame, described in its first?",
+)
 SOME_LEFT_OUT = (
     "Some of the transforms did not get into the product.",
     "Try your function on one, on two, and on five transforms, and count how many it multiplies.",
@@ -106,6 +154,8 @@ CHAIN = Exercise(
                 lambda *transforms: chain(*reversed(transforms)),
                 lambda *transforms: chain(*(transforms if len(transforms) < 3 else reversed(transforms))),
                 lambda *transforms: chain(*reversed(transforms[2:]), *transforms[:2]),  # right for two
+                lambda *transforms: chain(*reversed(transforms[:-1]), transforms[-1]),  # right for two, too
+                lambda *transforms: chain(transforms[-1], *transforms[:-1]),
             )
         ),
         *(
@@ -114,6 +164,32 @@ CHAIN = Exercise(
                 lambda *transforms: reduce(np.multiply, transforms),
                 lambda *transforms: reduce(np.multiply, transforms, np.eye(4)),
             )
+        ),
+        *(Misconception("single-transform", _alone(error), *ALONE) for error in (IndexError, TypeError, ValueError)),
+        *(
+            Misconception("single-transform", lambda *transforms, alone=alone: _pairs(transforms, alone), *ALONE)
+            for alone in (np.eye(4), np.zeros((4, 4)))
+        ),
+        *(
+            Misconception(
+                "updated-too-early",
+                wrong,
+                "Rotation and translation are worked out one after the other, and the second with the first one's new value.",
+                "Which rotation do the axes have along which the next translation counts: that before this link, or after it?",
+            )
+            for wrong in (_rotation_first, _translation_last)
+        ),
+        Misconception(
+            "order-reversed",
+            lambda *transforms: transform(chain(*transforms[::-1])[:3, :3], chain(*transforms)[:3, 3]),
+            "The translation is right, but the rotations were multiplied in the reverse order.",
+            MATCH_THE_NAMES,
+        ),
+        Misconception(
+            "order-reversed",
+            lambda *transforms: transform(chain(*transforms)[:3, :3], chain(*transforms[::-1])[:3, 3]),
+            "The rotation is right, but the translations were put together in the reverse order.",
+            MATCH_THE_NAMES,
         ),
         Misconception("offset-not-rotated", _with_rotation(lambda rotations: chain(*rotations)), *EACH_BY_ITSELF),
         Misconception(
@@ -157,6 +233,8 @@ CHAIN = Exercise(
                 lambda *transforms: transforms[-1],
                 lambda *transforms: chain(*transforms[:3]),
                 lambda *transforms: chain(*transforms[:4]),
+                _in_pairs,
+                lambda *transforms: chain(np.eye(4), *transforms[: len(transforms) // 2 * 2]),
                 lambda *transforms: chain(*(T for i, T in enumerate(transforms) if not _earlier(T, transforms[:i]))),
             )
         ),
@@ -170,12 +248,13 @@ CHAIN = Exercise(
             Misconception(
                 "applied-twice",
                 wrong,
-                "One transform is in the product twice.",
-                "What does your product start with, and which transform does your loop multiply first?",
+                "Some of the transforms are in the product twice.",
+                "Write down, for two and for three transforms, which of them your product takes in which step.",
             )
             for wrong in (
                 lambda *transforms: chain(transforms[0], *transforms),
                 lambda *transforms: chain(*transforms, transforms[-1]),
+                lambda *transforms: chain(np.eye(4), *(T for pair in pairwise(transforms) for T in pair)),
             )
         ),
         Misconception(
@@ -277,6 +356,35 @@ def _angles_added(a_T_b, pose_in_b):
     return from_euler(sum(roll_pitch_yaw(T[:3, :3]) for T in (a_T_b, matrix(pose_in_b))))
 
 
+def _rotation_vectors_added(T, pose_in_b):
+    return Rotation.from_rotvec(sum(rotation_vector(M[:3, :3]) for M in (T, matrix(pose_in_b)))).as_quat()
+
+
+def _quaternion_product(row, column):
+    """The product of quaternions with one sign wrong in one of its four sums."""
+
+    def wrong(T, pose_in_b):
+        first, second = quaternion(T[:3, :3]), orientation(pose_in_b)
+        units = np.eye(4)
+        result = product(first, second)
+        result[row] -= 2.0 * product(first, units[column])[row] * second[column]
+        return result
+
+    return wrong
+
+
+def _with_positive_w(q):
+    return np.append(q[:3], abs(q[3]))
+
+
+ONE_SIGN = (
+    "One of the orientation's four numbers is wrong: a sign in the product of quaternions.",
+    "Multiply by a turn about x, about y and about z, one after the other, and compare with what tft makes of them.",
+)
+ONE_TURNED_BACK = (
+    "One of the two rotations was used the opposite way round: transposed, or its quaternion conjugated.",
+    "The pose is turned in B, and B is turned in A: neither has to be undone.",
+)
 THE_WRONG_WAY_ROUND = (
     "The two transforms were multiplied in the wrong order.",
     MATCH_THE_NAMES,
@@ -420,17 +528,58 @@ TRANSFORM_POSE = Exercise(
             )
             for identifier, says, wrong, varies, fails in (BY_TRACE, BEYOND_120)
         ),
-        Misconception(
-            "quaternions-added",
-            _with_orientation(lambda T, p: _added(quaternion(T[:3, :3]), orientation(p))),
-            "The two quaternions were added.",
-            "One rotation after another is a product, of quaternions as of matrices.",
+        *(
+            Misconception(
+                "quaternions-added",
+                _with_orientation(lambda T, p, of=of: of(quaternion(T[:3, :3]), orientation(p))),
+                "The two quaternions were added.",
+                "One rotation after another is a product, of quaternions as of matrices.",
+            )
+            for of in (_added, np.add)
         ),
         Misconception(
             "euler-angles-added",
             _with_orientation(_angles_added),
             "Roll, pitch and yaw of the two rotations were added.",
             "Angles add up when both turns share an axis. One rotation after another is a product.",
+            varies=at_lock(lambda T, p: T, lambda T, p: matrix(p)),
+        ),
+        Misconception(
+            "rotation-vectors-added",
+            _with_orientation(_rotation_vectors_added),
+            "The rotation vectors (axis times angle) of the two rotations were added.",
+            "They add up when both turns share an axis. One rotation after another is a product.",
+            varies=lambda T, p: ("orientation",) if any(near_half_turns(M[:3, :3]) for M in (T, matrix(p))) else (),
+        ),
+        Misconception(
+            "elementwise-product",
+            _with_orientation(lambda T, p: quaternion(T[:3, :3]) * orientation(p)),
+            "The two quaternions were multiplied number by number.",
+            "The product of two quaternions mixes their numbers: tft has a function for it.",
+        ),
+        Misconception(
+            "change-of-basis",
+            _with_orientation(lambda T, p: np.append(T[:3, :3] @ orientation(p)[:3], orientation(p)[3])),
+            "The turn is told along A's axes, but B's own turn is not in the answer.",
+            "The pose is turned in B, and B is turned in A: what is the whole turn from A to the pose?",
+        ),
+        *(
+            Misconception("formula-slip", _with_orientation(_quaternion_product(row, column)), *ONE_SIGN)
+            for row in range(4)
+            for column in range(4)
+        ),
+        Misconception(
+            "sign-ignored",
+            _with_orientation(lambda T, p: _with_positive_w(product(quaternion(T[:3, :3]), orientation(p)))),
+            "The orientation goes wrong where the product's w is negative.",
+            "Changing the sign of w alone gives another orientation; what happens if all four signs change?",
+        ),
+        *(
+            Misconception("rotation-transposed", _with_orientation(of), *ONE_TURNED_BACK)
+            for of in (
+                lambda T, p: quaternion(T[:3, :3].T @ matrix(p)[:3, :3]),
+                lambda T, p: quaternion(T[:3, :3] @ matrix(p)[:3, :3].T),
+            )
         ),
         Misconception(
             "rotation-applied-twice",

@@ -98,6 +98,12 @@ def from_euler(angles, axes="xyz"):
     return Rotation.from_euler(axes, angles).as_quat()
 
 
+def product(first, second):
+    """The product of two quaternions x, y, z, w, in the order of the matrices' product."""
+    (*u, a), (*v, b) = first, second
+    return np.append(a * np.array(v) + b * np.array(u) + np.cross(u, v), a * b - np.dot(u, v))
+
+
 def rotation_vector(R):
     return Rotation.from_matrix(R).as_rotvec()
 
@@ -164,14 +170,14 @@ near_gimbal_lock = x_axis_upright
 # --- from a quaternion to a matrix, or to a turned vector --------------------------------------------------------------
 
 
-def _skew(v):
+def skew(v):
     return np.cross(np.eye(3), v)
 
 
 def _formula(q):
     """The parts of the well-known formula: products of x, y and z with each other, and with w."""
     v, w = np.asarray(q[:3]), q[3]
-    return v, np.outer(v, v), w * _skew(v)
+    return v, np.outer(v, v), w * skew(v)
 
 
 def _sign_slip(i, j):

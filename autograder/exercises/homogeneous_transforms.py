@@ -26,6 +26,7 @@ from .cases import (
     vector,
     wide_turn,
     with_bottom_row,
+    x_axis_upright,
 )
 from .conversions import (
     BEYOND_120,
@@ -35,10 +36,14 @@ from .conversions import (
     BY_TRACE,
     ORDERS,
     angle_not_halved,
+    at_half_turns,
     axis_and_angle,
     from_euler,
     half_turn_by_tolerance,
     lengths_with_signs,
+    near_half_turns,
+    skew,
+    slips,
     trace_formula,
     trace_formula_guarded,
     trace_formula_in_plain_python,
@@ -129,6 +134,30 @@ TRANSLATION_NEGATED = (
     "The translation is where B's origin is in A, seen from A's origin.",
 )
 
+PARTLY_COPIED = (
+    "Not all numbers of the rotation have got into the matrix: only those of a turn about z.",
+    "How many rows and columns does a rotation in space have? Look at the slice that you copy into.",
+)
+SUM_OF_BOTH = (
+    "The matrices of rotation and translation were added.",
+    "Which product of two matrices applies first one and then the other?",
+)
+NOT_ALL_OF_THE_POSITION = (
+    "The translation is not p: one of its numbers is missing, or in another place.",
+    "Check each component by itself: x, y and z, from top to bottom.",
+)
+INVERSE_TRANSLATION = (
+    "The translation is that of the inverse: A's origin, seen from B.",
+    "The translation is B's origin, already written in A; nothing needs to be done to it.",
+)
+
+
+def _turned_about_z_only(R):
+    kept = np.eye(3)
+    kept[:2, :2] = R[:2, :2]
+    return kept
+
+
 MAKE_TRANSFORM = Exercise(
     name="make_transform",
     returns="transform",
@@ -157,6 +186,25 @@ MAKE_TRANSFORM = Exercise(
         Misconception("integer-truncation", lambda R, p: np.trunc(make_transform(R, p)), *TRUNCATED),
         Misconception("wrong-direction", lambda R, p: np.linalg.inv(make_transform(R, p)), *INVERSE_RETURNED),
         Misconception("wrong-sign", lambda R, p: make_transform(R, -p), *TRANSLATION_NEGATED),
+        Misconception("wrong-direction", lambda R, p: make_transform(R, -R.T @ p), *INVERSE_TRANSLATION),
+        Misconception("yaw-only", lambda R, p: make_transform(_turned_about_z_only(R), p), *PARTLY_COPIED),
+        *(
+            Misconception("wrong-position", lambda R, p, of=of: make_transform(R, of(p)), *NOT_ALL_OF_THE_POSITION)
+            for of in (
+                *(lambda p, kept=kept: p * kept for kept in ([1, 1, 0], [1, 0, 1], [0, 1, 1])),
+                *(lambda p, order=order: p[order] for order in ([2, 1, 0], [0, 2, 1], [1, 0, 2])),
+            )
+        ),
+        Misconception(
+            "added-not-multiplied",
+            lambda R, p: make_transform(R, (0, 0, 0)) + make_transform(np.eye(3), p),
+            *SUM_OF_BOTH,
+        ),
+        Misconception(
+            "elementwise-product",
+            lambda R, p: make_transform(R, (0, 0, 0)) * make_transform(np.eye(3), p),
+            *ENTRY_BY_ENTRY,
+        ),
         Misconception(
             "wrong-shape",
             lambda R, p: make_transform(R, p)[:3],
@@ -191,10 +239,6 @@ def _hand(R=None, p=(-0.1, 0, 0)):
     return lambda: transform(hand_transform()[:3, :3] if R is None else R, p)
 
 
-def _columns(x, y, z):
-    return np.column_stack((x, y, z)).astype(float)
-
-
 WRONG_LENGTH = (
     "The hand moved in the right direction, but not by the right distance.",
     "The task says centimetres; lengths in a transform are metres.",
@@ -208,7 +252,7 @@ ROLLED_ABOUT_ANOTHER_AXIS = (
     "Rolling leaves the index finger where it is: which column of the rotation must not change?",
 )
 LEFT_HANDED = (
-    "One axis of your frame points the opposite way, which makes a left-handed frame.",
+    "Your frame is left-handed: a mirror image of one that a right hand can take, as when one axis points the opposite way.",
     "Hold up your right hand again: once two fingers are placed, the third has no choice.",
 )
 
@@ -253,14 +297,7 @@ HAND_TRANSFORM = Exercise(
         ),
         Misconception("position-missing", _hand(p=(0, 0, 0)), *NO_TRANSLATION),
         Misconception("orientation-identity", _hand(np.eye(3)), *NO_ROTATION),
-        *(
-            Misconception("left-handed", _hand(_columns(x, y, z)), *LEFT_HANDED)
-            for x, y, z in (
-                ((1, 0, 0), (0, 0, 1), (0, 1, 0)),
-                ((1, 0, 0), (0, 0, -1), (0, -1, 0)),
-                ((-1, 0, 0), (0, 0, -1), (0, 1, 0)),
-            )
-        ),
+        *(Misconception("left-handed", _hand(-R), *LEFT_HANDED) for R in signed_permutations()),  # all mirror images
         Misconception(
             "degrees-as-radians",
             _hand(Rotation.from_euler("x", -90).as_matrix()),
@@ -315,6 +352,13 @@ def open_where(varies, fails, matrix_of, parts=("orientation",)):
         name: lambda *args, where=where, **kwargs: parts if where(matrix_of(*args, **kwargs)[:3, :3]) else ()
         for name, where in (("varies", varies), ("fails", fails))
     }
+
+
+def at_lock(*matrices_of, parts=("orientation",)):
+    """The field `varies` of who takes angles of matrices, each of them a function of the arguments: at gimbal lock roll and yaw
+    are what one makes of them.
+    """
+    return lambda *args: parts if any(x_axis_upright(matrix_of(*args)) for matrix_of in matrices_of) else ()
 
 
 def _read_as(order, matrix):
@@ -441,12 +485,14 @@ TRANSFORM_TO_POSE = Exercise(
             _to_pose_with(orientation=lambda matrix: from_euler(np.degrees(roll_pitch_yaw(matrix[:3, :3])))),
             "Angles in degrees were taken for radians on the way to the quaternion.",
             "Functions of angles expect radians; a function that goes from matrix to quaternion needs no angles.",
+            varies=at_lock(lambda matrix: matrix),
         ),
         Misconception(
             "euler-order",
             _to_pose_with(orientation=lambda matrix: from_euler(roll_pitch_yaw(matrix[:3, :3]), "XYZ")),
             "Roll, pitch and yaw were put together in another order than they were taken apart.",
             "Fixed axes and moving axes are two orders; a function from matrix to quaternion needs neither.",
+            varies=at_lock(lambda matrix: matrix),
         ),
         *(
             Misconception("trace-formula-only", _to_pose_with(orientation=orientation), *BREAKS_AT_HALF_TURN)
@@ -534,6 +580,22 @@ def _planar(q):
     return Rotation.from_euler("z", 2.0 * math.atan2(q[2], q[3])).as_matrix()
 
 
+def _by_tangents(q):
+    """Cayley's formula, of x, y and z divided by w."""
+    K = skew(q[:3] / q[3])
+    return np.linalg.inv(np.eye(3) - K) @ (np.eye(3) + K)
+
+
+def _from_pose_with_translation(of):
+    """`pose_to_transform` of someone whose rotation is right, and whose translation is `of(R, position)`."""
+    return lambda pose: make_transform(matrix(pose)[:3, :3], of(matrix(pose)[:3, :3], position(pose)))
+
+
+ONE_ENTRY = (
+    "One number of the rotation is wrong: a sign or a term of the formula from quaternion to matrix.",
+    "Which column of your matrix is not of length 1, or not at right angles to the others? It holds the slip.",
+)
+
 POSE_TO_TRANSFORM = Exercise(
     name="pose_to_transform",
     returns="transform",
@@ -590,8 +652,7 @@ POSE_TO_TRANSFORM = Exercise(
         Misconception(
             "added-not-multiplied",
             lambda pose: _turned(pose) + _from_pose_with(lambda q: np.eye(3))(pose),
-            "The matrices of rotation and translation were added.",
-            "Which product of two matrices applies first one and then the other?",
+            *SUM_OF_BOTH,
         ),
         Misconception("wrong-direction", lambda pose: np.linalg.inv(pose_to_transform(pose)), *INVERSE_RETURNED),
         Misconception(
@@ -643,6 +704,15 @@ POSE_TO_TRANSFORM = Exercise(
             )
             for order in ([0, 1, 0], [2, 1, 0], [0, 2, 1], [1, 0, 2])
         ),
+        *(Misconception("formula-slip", _from_pose_with(of), *ONE_ENTRY) for of in slips(0, 1, 2)),
+        Misconception(
+            "half-turn-missed",
+            _from_pose_with(_by_tangents),
+            "The rotation goes wrong at half turns, where w is 0.",
+            "Your formula divides by w: which of the quaternion's numbers can be 0? The usual one divides by none of them.",
+            **open_where(near_half_turns, at_half_turns, matrix, ("rotation",)),
+        ),
+        Misconception("wrong-direction", _from_pose_with_translation(lambda R, p: -R.T @ p), *INVERSE_TRANSLATION),
         Misconception(
             "sign-ignored",
             _from_pose_with(lambda q: Rotation.from_quat([*q[:3], abs(q[3])]).as_matrix()),
@@ -711,6 +781,19 @@ IN_THE_WRONG_ORDER = (
     "Rotation and translation were applied in the wrong order, or the matrix from the wrong side.",
     "A matrix stands to the left of the point it transforms; and which of the two acts on the point first?",
 )
+
+ONE_IN_FRONT = (
+    "The fourth number stands in front of the point's coordinates instead of behind them.",
+    "Which column of a_T_b is the translation? The 1 has to meet it.",
+)
+
+
+def _overwriting(a_T_b, p_in_b):
+    p = np.array(p_in_b, dtype=float)
+    for row in range(3):
+        p[row] = a_T_b[row, :3] @ p + a_T_b[row, 3]
+    return p
+
 
 TRANSFORM_POINT = Exercise(
     name="transform_point",
@@ -785,6 +868,49 @@ TRANSFORM_POINT = Exercise(
             "wrong-sign",
             lambda a_T_b, p_in_b: a_T_b[:3, :3] @ p_in_b - a_T_b[:3, 3],
             *MOVED_BACK,
+        ),
+        *(
+            Misconception("homogeneous-order", wrong, *ONE_IN_FRONT)
+            for wrong in (
+                lambda a_T_b, p_in_b: (a_T_b @ np.append(1, p_in_b))[:3],
+                lambda a_T_b, p_in_b: (a_T_b @ np.append(1, p_in_b))[1:],
+            )
+        ),
+        Misconception(
+            "homogeneous-order",
+            lambda a_T_b, p_in_b: (a_T_b @ np.append(p_in_b, p_in_b[0]))[:3],
+            "The fourth number is one of the point's coordinates.",
+            "Which fourth number lets the translation in, once and as it is?",
+        ),
+        Misconception(
+            "updated-too-early",
+            _overwriting,
+            "A coordinate is overwritten before the others have been worked out with it.",
+            "Keep the point as it was until all three new coordinates are known.",
+        ),
+        Misconception(
+            "zero-taken-for-missing",
+            lambda a_T_b, p_in_b: transform_point(a_T_b, p_in_b) if np.any(p_in_b) else np.zeros(3),
+            "The point 0, 0, 0 stays 0, 0, 0.",
+            "That is B's own origin: where is it in A?",
+        ),
+        Misconception(
+            "order-reversed;wrong-sign",
+            lambda a_T_b, p_in_b: a_T_b[:3, :3] @ (p_in_b - a_T_b[:3, 3]),
+            *together(IN_THE_WRONG_ORDER, MOVED_BACK),
+        ),
+        *(
+            Misconception(
+                "applied-twice",
+                wrong,
+                "The rotation or the translation is in the answer twice.",
+                "How many steps are there from B to A?",
+            )
+            for wrong in (
+                lambda a_T_b, p_in_b: transform_point(a_T_b, p_in_b) + a_T_b[:3, 3],
+                lambda a_T_b, p_in_b: transform_point(a_T_b, transform_point(a_T_b, p_in_b)),
+                lambda a_T_b, p_in_b: a_T_b[:3, :3] @ a_T_b[:3, :3] @ p_in_b + a_T_b[:3, 3],
+            )
         ),
         Misconception(
             "rest-ignored",

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -27,9 +28,9 @@ from .cases import (
     wide_turn,
     x_axis_upright,
 )
-from .conversions import BEYOND_120, BY_ANGLES, BY_TRACE, ORDERS
+from .conversions import BEYOND_120, BY_ANGLES, BY_TRACE, ORDERS, TURNED_WITH_A_TERM_MISSING, slips
 from .equivalent import MAKING_A_POSE, READING_A_POSE, UPPER_LEFT
-from .homogeneous_transforms import ENTRY_BY_ENTRY, NO_ORIENTATION, QUATERNION_ORDER, open_where
+from .homogeneous_transforms import ENTRY_BY_ENTRY, NO_ORIENTATION, QUATERNION_ORDER, at_lock, open_where
 from .specification import Case, Exercise, Misconception
 
 LAB_OBJECT = pose_of((0.6, -0.1, 0.7), (0.0, 0.0, 0.38268343, 0.92387953))  # the lab's, as printed there
@@ -153,6 +154,24 @@ def _turned_twice(object_pose):
     return quaternion(R @ R)
 
 
+def _moved_by(step):
+    """`waypoint` of someone who goes by `step(x y z w, offset)`."""
+
+    def wrong(object_pose, offset):
+        q = orientation(object_pose)
+        return pose_of(position(object_pose) + step(q, np.asarray(offset)), q)
+
+    return wrong
+
+
+ONE_TERM = (
+    "The offset is not turned quite right: a sign or a term of the formula with the quaternion's numbers is missing.",
+    "Turning changes no length: which offsets come out longer or shorter than they were?",
+)
+PARTLY_IN_THE_BASE = (
+    "One number of the offset was added along an axis of the base, the others along those of the object.",
+    "An object can lie on its side: where does its own z axis point then?",
+)
 IN_THE_BASE = (
     "The offset was added along the axes of the base, as if the object were not turned.",
     "Behind, beside and above are meant along the object's axes: how do these lie in the base frame?",
@@ -247,6 +266,10 @@ SHARED: tuple[Misconception, ...] = (
         _open("position", x_axis_upright),  # where there is no yaw
     ),
     Misconception("yaw-only", _yaw_of_quaternion, *UPRIGHT_ONLY),
+    *(
+        Misconception("formula-slip", _moved_by(lambda q, offset, turned=turned: turned(q, offset)), *ONE_TERM)
+        for turned in TURNED_WITH_A_TERM_MISSING
+    ),
     *(
         Misconception("quaternion-order", wrong, *READ_IN_ANOTHER_ORDER)
         for wrong in (
@@ -347,6 +370,16 @@ PRE_GRASP = Exercise(
             )
             for axis in (*np.eye(3)[1:], *-np.eye(3)[1:])
         ),
+        *(
+            Misconception("formula-slip", _behind(_moved_by(lambda q, offset, of=of: of(q) @ offset)), *ONE_TERM)
+            for of in slips(0)
+        ),
+        Misconception(
+            "zero-taken-for-missing",
+            lambda object_pose, distance=0.1: pre_grasp(object_pose, distance or 0.1),
+            "A distance of 0 is taken for 0.1.",
+            "0 is a distance, too, though Python takes it for False: what tells a distance that is missing from one that is 0?",
+        ),
         Misconception(
             "towards-the-base",
             _behind(_moved(lambda p, R, offset: p + offset[0] * p / np.linalg.norm(p))),
@@ -367,11 +400,30 @@ WAYPOINT = Exercise(
     equivalent=READING_A_POSE | MAKING_A_POSE | {UPPER_LEFT: ("transform: 4 -> 5",)},
     misconceptions=(
         *SHARED,
-        Misconception(
-            "wrong-axis",
-            _moved(lambda p, R, offset: p + R[:, 0] * offset[0]),
-            "Only the first number of the offset is used.",
-            "The offset can go along all three axes of the object.",
+        *(
+            Misconception(
+                "wrong-axis",
+                _moved(lambda p, R, offset, used=used: p + R @ (offset * used)),
+                "Not all three numbers of the offset are used.",
+                "The offset can go along all three axes of the object.",
+            )
+            for used in product((1, 0), repeat=3)
+            if 0 < sum(used) < 3
+        ),
+        *(
+            Misconception(
+                "base-frame-offset", _moved(lambda p, R, v, k=k: p + R @ (v * (1 - k)) + v * k), *PARTLY_IN_THE_BASE
+            )
+            for k in np.eye(3, dtype=int)
+        ),
+        *(
+            Misconception(
+                "wrong-sign",
+                _moved(lambda p, R, offset, signs=signs: p + R @ (offset * signs)),
+                "One number of the offset goes the opposite way.",
+                "All three numbers of the offset count along the object's axes as they are, each with its own sign.",
+            )
+            for signs in 1 - 2 * np.eye(3)
         ),
         Misconception(
             "wrong-axis",
@@ -394,11 +446,22 @@ WAYPOINT = Exercise(
             "The answer is always 10 cm away, whatever the length of the offset.",
             "The offset says how far to go, not only in which direction.",
         ),
-        Misconception(
-            "euler-order",
-            _moved(lambda p, R, offset: p + from_roll_pitch_yaw(roll_pitch_yaw(R)[::-1]) @ offset),
-            "Roll, pitch and yaw were put together in another order than they were taken apart.",
-            "A rotation matrix or a quaternion can be used as it is, without any angles.",
+        *(
+            Misconception(
+                "euler-order",
+                _moved(lambda p, R, offset, again=again: p + again(roll_pitch_yaw(R)) @ offset),
+                "Roll, pitch and yaw were put together in another order than they were taken apart.",
+                "A rotation matrix or a quaternion can be used as it is, without any angles.",
+                varies=at_lock(lambda object_pose, offset: matrix(object_pose), parts=("position",)),
+            )
+            for again in (
+                lambda angles: from_roll_pitch_yaw(angles[::-1]),
+                lambda angles: Rotation.from_euler("XYZ", angles).as_matrix(),
+            )
+        ),
+        *(
+            Misconception("formula-slip", _moved_by(lambda q, offset, of=of: of(q) @ offset), *ONE_TERM)
+            for of in slips(0, 1, 2)
         ),
         Misconception(
             "rotation-applied-twice",
