@@ -6,6 +6,9 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 from transform_lab import Point, Pose, Quaternion
 
+SMALL = range(-6, 0)  # decades of metres and radians below 1 that are felt at a tolerance of 1e-6
+FAR = range(1, 4)  # decades of metres beyond 10
+
 
 def signed_permutations():
     """The 24 rotations that map axes onto axes, with exact integer entries.
@@ -43,13 +46,13 @@ def half_turn(rng, largest=None):
     return 2.0 * np.outer(axis, axis) - np.eye(3)
 
 
-def near_half_turn(rng, short):
-    """A turn about a slanted axis that is `short` (radians) of a half turn.
+def almost_half_turns(rng):
+    """Turns about slanted axes that are short of a half turn by an angle in each decade below 1 radian.
 
-    Keep `short` at 1e-3 or more: below, the 12 decimals of the key blur a trace so near to -1, and it becomes a matter
-    of luck whether a formula that divides by w is still right.
+    In the last decade w is too small to be felt by itself, but who divides by it loses all digits of x, y and z: there a
+    formula is right or wrong for good, a decade before it would be a matter of luck.
     """
-    return rotation_about(slanted_axis(rng), np.pi - short)
+    return [rotation_about(slanted_axis(rng), np.pi - size(rng, decade)) for decade in (*SMALL[::-1], -7)]
 
 
 def wide_turn(rng, largest=None):
@@ -75,9 +78,37 @@ def _with_largest(index, sizes):
 
 
 def vector(rng, length=1.0):
-    """A generic vector: three components, none near zero and no two nearly alike in size."""
+    """A generic vector of about this length: three components, none near zero and no two nearly alike in size."""
     sizes = rng.permutation([0.3, 0.6, 0.9]) + rng.uniform(-0.1, 0.1, size=3)
     return length * sizes * rng.choice([-1.0, 1.0], size=3)
+
+
+def size(rng, decade):
+    """A length (metres) or an angle (radians) in [10^decade, 10^(decade + 1)), as large as `vector` may make it longer.
+
+    In the upper half of the decade, so that in the lowest one, too, half an angle is more than the tolerance of 1e-6.
+    """
+    return rng.uniform(5.0, 7.5) * 10.0**decade
+
+
+def far(rng):
+    """Vectors with a length in each decade of FAR."""
+    return [vector(rng, size(rng, decade)) for decade in FAR]
+
+
+def near(rng):
+    """Vectors with a length in each decade of SMALL."""
+    return [vector(rng, size(rng, decade)) for decade in SMALL]
+
+
+def small_turns(rng):
+    """Turns about slanted axes by an angle in each decade of SMALL."""
+    return [rotation_about(slanted_axis(rng), size(rng, decade)) for decade in SMALL]
+
+
+def small_transforms(rng):
+    """Frames that are hardly turned and hardly moved, both by as little, in each decade of SMALL."""
+    return [transform(R, p) for R, p in zip(small_turns(rng), near(rng))]
 
 
 def transform(R, p):
@@ -85,6 +116,24 @@ def transform(R, p):
     result = np.eye(4)
     result[:3, :3], result[:3, 3] = R, p
     return result
+
+
+def brought_near(T, rng):
+    """Coordinates in B of a point that lies near A's origin, however far away B is.
+
+    Of large numbers that cancel, single precision keeps too few digits.
+    """
+    return T[:3, :3].T @ (vector(rng) - T[:3, 3])
+
+
+def whole(T):
+    """The same matrix, as an array of integers: who builds the answer in an array of this type cuts off its fractions."""
+    return T.astype(int)
+
+
+def whole_pose():
+    """A pose of integers, as one types it: a half turn about x."""
+    return Pose(Point(1, -2, 3), Quaternion(1, 0, 0, 0))
 
 
 def generic_transform(rng):

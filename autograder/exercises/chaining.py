@@ -8,12 +8,15 @@ from scipy.spatial.transform import Rotation
 from transform_lab.judging.diagnosis import together
 
 from .cases import (
+    almost_half_turns,
+    brought_near,
     either_sign,
+    far,
     generic_pose,
     generic_transform,
     half_turn,
     matrix,
-    near_half_turn,
+    near,
     orientation,
     pose,
     pose_of,
@@ -22,9 +25,13 @@ from .cases import (
     roll_pitch_yaw,
     rotation,
     signed_permutations,
+    small_transforms,
+    small_turns,
     tilt,
     transform,
     vector,
+    whole,
+    whole_pose,
     wide_turn,
 )
 from .conversions import BEYOND_120, BY_TRACE, ORDERS, from_euler, near_half_turns, product, rotation_vector
@@ -53,17 +60,23 @@ def chain_cases(rng):
     along_axes = [transform(R, vector(rng)) for R in signed_permutations()]
     shuffled = [along_axes[index] for index in rng.permutation(24)]
     first, second, third = some(3)
-    still = np.eye(4)
+    still, whole_numbers = np.eye(4), whole(transform(signed_permutations()[5], (1, -2, 3)))
+    small = small_transforms(rng)
     families = {
         "two frames, each turned by quarter turns": list(zip(shuffled[:12], shuffled[12:])),
         "one or two transforms": [(first, second), some(1), (first, third), some(1), (still, second), (first, first)],
         "three transforms": [(first, second, third), (second, third, first), (third, third, third)],
         "four to six transforms": [some(4), (first, second, still, third, second), some(6), (first,) * 4],
+        "frames hardly turned and hardly moved": [
+            *((*some(1), T) for T in small[::2]), *((T, *some(1)) for T in small[1::2]), tuple(small),
+        ],
         "frames far away and close by": [
             (transform(tilt(rng), vector(rng, 50.0)), transform(half_turn(rng), vector(rng, 0.01))),
             (transform(wide_turn(rng), vector(rng, 0.01)), transform(tilt(rng), vector(rng, 50.0)), *some(1)),
+            *((T, transform(tilt(rng), brought_near(T, rng))) for T in (transform(tilt(rng), p) for p in far(rng))),
         ],
-    }
+        "one transform in whole numbers": [(whole_numbers, second), (first, whole_numbers, third)],
+    }  # fmt: skip
     return [Case(family, args) for family, lists in families.items() for args in lists]
 
 
@@ -292,8 +305,8 @@ def transform_pose(a_T_b, pose_in_b):
 def transform_pose_cases(rng):
     along_axes = signed_permutations()
     shuffled = [along_axes[index] for index in rng.permutation(24)]
-    first, second = rotation(rng), rotation(rng)
     T, p = generic_transform(rng), generic_pose(rng)
+    far_away = [transform(tilt(rng), p) for p in far(rng)]
     families = {
         "frames turned by quarter turns": [
             (transform(R, vector(rng)), pose(S, vector(rng))) for R, S in zip(shuffled[:12], shuffled[12:])
@@ -306,24 +319,36 @@ def transform_pose_cases(rng):
             (generic_transform(rng), pose(np.eye(3), vector(rng))),
             (transform(rotation(rng), np.zeros(3)), generic_pose(rng)),
             (transform(np.eye(3), vector(rng)), generic_pose(rng)),
+            (np.eye(4), generic_pose(rng)),
+            (generic_transform(rng), pose(np.eye(3), np.zeros(3))),
         ],
         "frames turned by more than 120 degrees": [
             (transform(R, vector(rng)), pose(S, vector(rng)))
             for R, S in ((wide_turn(rng), wide_turn(rng)), (half_turn(rng), tilt(rng)), (tilt(rng), half_turn(rng)))
         ],
         "almost a half turn in all": [
-            (transform(R, vector(rng)), pose(R.T @ near_half_turn(rng, short), vector(rng)))
-            for R, short in ((first, 1e-2), (second, 1e-3))
+            (transform(R, vector(rng)), pose(R.T @ almost, vector(rng)))
+            for R, almost in ((rotation(rng), almost) for almost in almost_half_turns(rng))
+        ],
+        "frames hardly turned and hardly moved": [
+            *((T, pose(R, vector(rng))) for T, R in zip(small_transforms(rng), small_turns(rng))),
+            *((transform(rotation(rng), vector(rng)), pose(R, p)) for R, p in zip(small_turns(rng), near(rng))),
         ],
         "frames far away and close by": [
             (transform(tilt(rng), vector(rng, 50.0)), pose(wide_turn(rng), vector(rng, 0.01))),
-            (transform(tilt(rng), vector(rng, 0.01)), pose(tilt(rng), vector(rng, 50.0))),
+            *((T, pose(tilt(rng), brought_near(T, rng))) for T in far_away),
         ],
     }
-    return [
+    cases = [
         Case(family, (T, pose_in_b))
         for family, pairs in families.items()
         for T, pose_in_b in zip([T for T, _ in pairs], either_sign([pose_in_b for _, pose_in_b in pairs]))
+    ]
+    whole_numbers = whole(transform(signed_permutations()[5], (1, -2, 3)))
+    return [
+        *cases,
+        Case("frame or pose in whole numbers", (whole_numbers, generic_pose(rng))),
+        Case("frame or pose in whole numbers", (generic_transform(rng), whole_pose())),
     ]
 
 

@@ -7,10 +7,13 @@ from scipy.spatial.transform import Rotation
 from transform_lab.judging.diagnosis import together
 
 from .cases import (
+    almost_half_turns,
+    brought_near,
     either_sign,
+    far,
     half_turn,
     matrix,
-    near_half_turn,
+    near,
     orientation,
     pose,
     pose_of,
@@ -20,10 +23,13 @@ from .cases import (
     rotation,
     rotation_about,
     signed_permutations,
-    slanted_axis,
+    small_transforms,
+    small_turns,
     tilt,
     transform,
     vector,
+    whole,
+    whole_pose,
     wide_turn,
     with_bottom_row,
     x_axis_upright,
@@ -63,13 +69,12 @@ def many_frames(rng):
         "a tilted frame": [(R, p), (tilt(rng), p), (R, vector(rng)), (rotation(rng), np.zeros(3))],
         "a frame turned by more than 120 degrees": [(wide_turn(rng, axis), vector(rng)) for axis in range(3)],
         "a half turn about a slanted axis": [(half_turn(rng, axis), vector(rng)) for axis in range(3)],
-        "almost a half turn": [(near_half_turn(rng, short), vector(rng)) for short in (1e-2, 3e-3, 1e-3)],
-        "Example 1, and turns by a fraction of a degree": [
-            (EXAMPLE_1[:3, :3], EXAMPLE_1[:3, 3]),
-            *((rotation_about(slanted_axis(rng), angle), vector(rng)) for angle in (1e-2, 1e-3)),
+        "almost a half turn": [(R, vector(rng)) for R in almost_half_turns(rng)],
+        "Example 1, and frames hardly turned and hardly moved": [
+            (EXAMPLE_1[:3, :3], EXAMPLE_1[:3, 3]), *zip(small_turns(rng), near(rng)),
         ],
-        "a frame far away": [(tilt(rng), vector(rng, 50.0)), (wide_turn(rng), vector(rng, 20.0))],
-    }
+        "a frame far away": list(zip((tilt(rng), wide_turn(rng), tilt(rng)), far(rng))),
+    }  # fmt: skip
 
 
 # --- make_transform -------------------------------------------------------------------------------------------------
@@ -87,11 +92,11 @@ def make_transform_cases(rng):
     families = {
         "a frame turned by quarter turns": [(R, vector(rng)) for R in signed_permutations()],
         "a tilted frame": [(R, p), (tilt(rng), p), (R, vector(rng)), (wide_turn(rng), np.zeros(3))],
-        "a frame turned by a fraction of a degree": [
-            (rotation_about(slanted_axis(rng), angle), vector(rng)) for angle in (1e-2, 1e-3)
-        ],
-        "a frame far away, or less than a centimetre away": [
-            (rotation(rng), vector(rng, 50.0)), (rotation(rng), vector(rng, 0.005)),
+        "a frame hardly turned and hardly moved": list(zip(small_turns(rng), near(rng))),
+        "a frame far away": [(rotation(rng), p) for p in far(rng)],
+        "rotation or translation in whole numbers": [
+            (whole(signed_permutations()[1]), vector(rng)), (rotation(rng), np.array([1, -2, 3])),
+            (whole(signed_permutations()[3]), np.array([3, 1, -2])),
         ],
     }  # fmt: skip
     return [Case(family, pair) for family, pairs in families.items() for pair in pairs]
@@ -327,7 +332,9 @@ def transform_to_pose(matrix):
 
 
 def transform_to_pose_cases(rng):
-    return [Case(family, (transform(R, p),)) for family, frames in many_frames(rng).items() for R, p in frames]
+    whole_numbers = Case("a frame turned by quarter turns", (whole(transform(signed_permutations()[5], (1, -2, 3))),))
+    cases = [Case(family, (transform(R, p),)) for family, frames in many_frames(rng).items() for R, p in frames]
+    return [whole_numbers, *cases]
 
 
 def _to_pose_with(position=None, orientation=None):
@@ -559,11 +566,12 @@ def pose_to_transform(pose):
 
 
 def pose_to_transform_cases(rng):
-    return [
+    cases = [
         Case(family, (frame,))
         for family, frames in many_frames(rng).items()
         for frame in either_sign([pose(R, p) for R, p in frames])
     ]
+    return [Case("a frame turned by quarter turns", (whole_pose(),)), *cases]
 
 
 def _from_pose_with(rotation):
@@ -736,18 +744,25 @@ def transform_point_cases(rng):
         "a frame turned by quarter turns": [(transform(R, vector(rng)), vector(rng)) for R in signed_permutations()],
         "a tilted frame": [
             (T, p), (transform(tilt(rng), vector(rng)), p), (T, vector(rng)),
-            (transform(half_turn(rng), np.zeros(3)), vector(rng)),
+            (transform(half_turn(rng), np.zeros(3)), vector(rng)), (np.eye(4), vector(rng)),
         ],
         "Example 1, and the tips of B's other axes": [
             (EXAMPLE_1, x_axis),
             (transform(rotation(rng), vector(rng)), y_axis),
             (transform(tilt(rng), vector(rng)), z_axis),
         ],
-        "a point near B's origin, or in it, and a frame far away": [
-            (transform(tilt(rng), vector(rng, 50.0)), np.zeros(3)),
-            (transform(wide_turn(rng), vector(rng, 50.0)), vector(rng, 0.01)),
+        "a frame hardly turned and hardly moved": [(T, vector(rng)) for T in small_transforms(rng)],
+        "a point near B's origin, or in it": [
+            (transform(tilt(rng), vector(rng)), np.zeros(3)), *((transform(rotation(rng), vector(rng)), p) for p in near(rng)),
         ],
-        "a point far away": [(transform(tilt(rng), vector(rng)), vector(rng, 50.0)) for _ in range(2)],
+        "a frame far away, a point far away, or both": [
+            *((T, brought_near(T, rng)) for T in (transform(tilt(rng), p) for p in far(rng))),
+            *((transform(wide_turn(rng), vector(rng)), p) for p in far(rng)),
+        ],
+        "frame or point in whole numbers": [
+            (whole(transform(signed_permutations()[5], (1, -2, 3))), vector(rng)),
+            (transform(rotation(rng), vector(rng)), np.array([1, -2, 3])),
+        ],
     }  # fmt: skip
     return [Case(family, pair) for family, pairs in families.items() for pair in pairs]
 

@@ -5,18 +5,24 @@ from scipy.spatial.transform import Rotation
 from transform_lab.judging.diagnosis import together
 
 from .cases import (
+    FAR,
+    brought_near,
+    far,
     from_roll_pitch_yaw,
     generic_transform,
     half_turn,
+    near,
     off_diagonal,
     roll_pitch_yaw,
     rotation,
-    rotation_about,
     signed_permutations,
-    slanted_axis,
+    size,
+    small_transforms,
+    small_turns,
     tilt,
     transform,
     vector,
+    whole,
     wide_turn,
     with_bottom_row,
 )
@@ -106,10 +112,16 @@ def invert_transform_cases(rng):
             transform(half_turn(rng), vector(rng)), transform(rotation(rng), np.zeros(3)),
         ],
         "a frame turned by more than 120 degrees": [transform(wide_turn(rng), vector(rng)) for _ in range(2)],
-        "a frame turned by a fraction of a degree": [
-            transform(rotation_about(slanted_axis(rng), angle), vector(rng)) for angle in (1e-2, 1e-3)
+        "a frame hardly turned": [transform(R, vector(rng)) for R in small_turns(rng)],
+        "a frame hardly turned and hardly moved": small_transforms(rng),
+        "a frame far away": [
+            *(transform(tilt(rng), p) for p in far(rng)),
+            *(
+                transform(R, R @ (size(rng, decade), 0.4, -0.7))  # the answer has small numbers, too
+                for R, decade in zip((rotation(rng), wide_turn(rng), tilt(rng)), FAR)
+            ),
         ],
-        "a frame far away": [transform(tilt(rng), vector(rng, length)) for length in (50.0, 20.0)],
+        "a frame in whole numbers": [whole(transform(R, (1, -2, 3))) for R in (np.eye(3), signed_permutations()[5])],
     }  # fmt: skip
     return [Case(family, (T,)) for family, transforms in families.items() for T in transforms]
 
@@ -220,6 +232,7 @@ def relative_transform_cases(rng):
     shuffled = [along_axes[index] for index in rng.permutation(24)]
     R, p = rotation(rng), vector(rng)
     B, C, turned = transform(R, p), generic_transform(rng), transform(tilt(rng), p)
+    whole_numbers = whole(transform(signed_permutations()[5], (1, -2, 3)))
     families = {
         "frames turned by quarter turns": list(zip(shuffled[:12], shuffled[12:])),
         "two tilted frames": [(B, C), (B, generic_transform(rng)), (turned, C), (B, turned)],
@@ -228,13 +241,17 @@ def relative_transform_cases(rng):
             (transform(half_turn(rng), vector(rng)), transform(wide_turn(rng), vector(rng))),
         ],
         "two frames that are close to each other, or the same": [
-            *(
-                (transform(R, far), transform(R @ tilt(rng), far + vector(rng, 0.1)))
-                for far in (vector(rng, 20.0), vector(rng, 50.0))
-            ),
-            (C, transform(C[:3, :3] @ rotation_about(slanted_axis(rng), 2e-3), C[:3, 3] + vector(rng, 0.002))),
-            (C, C), (np.eye(4), B),
+            (C, C), *((C, C @ T) for T in small_transforms(rng)),
         ],
+        "two frames that are close to each other, and far away": [
+            *((transform(R, far_away), transform(R @ tilt(rng), far_away + vector(rng))) for far_away in far(rng)),
+            *((transform(R, far_away), transform(R, far_away + p)) for far_away, p in zip((*far(rng), *far(rng)), near(rng))),
+        ],
+        "a frame hardly turned and hardly moved, or not at all": [
+            (np.eye(4), B), (C, np.eye(4)), *zip(small_transforms(rng), small_transforms(rng)),
+            *((T, transform(rotation(rng), vector(rng))) for T in small_transforms(rng)),
+        ],
+        "one frame in whole numbers": [(whole_numbers, C), (B, whole_numbers)],
     }  # fmt: skip
     return [Case(family, pair) for family, pairs in families.items() for pair in pairs]
 
@@ -450,7 +467,7 @@ def object_in_gripper_cases(rng):
     shuffled = [along_axes[index] for index in rng.permutation(24)]
     in_front = np.array([1.0, 0.0, 0.0])
     C, G = transform(tilt(rng), vector(rng)), transform(wide_turn(rng), vector(rng))
-    p = vector(rng)
+    p, R, whole_numbers = vector(rng), rotation(rng), whole(transform(signed_permutations()[5], (1, -2, 3)))
     families = {
         "an object 1 m in front of the camera": [
             (generic_transform(rng), generic_transform(rng), in_front) for _ in range(3)
@@ -462,9 +479,19 @@ def object_in_gripper_cases(rng):
             (C, G, p), (C, G, vector(rng)), (C, generic_transform(rng), p),
             (transform(half_turn(rng), vector(rng)), G, p), (G, C, np.zeros(3)), (G, G, p),
         ],
+        "camera and gripper hardly turned and hardly moved": [
+            (camera, gripper, vector(rng)) for camera, gripper in zip(small_transforms(rng), small_transforms(rng))
+        ],
+        "camera and gripper close to each other, and the object close to the camera": [
+            (G, G @ T, p) for T, p in zip(small_transforms(rng), near(rng))
+        ],
         "camera, gripper and object far away": [
             (transform(tilt(rng), vector(rng, 20.0)), transform(tilt(rng), vector(rng, 30.0)), vector(rng, 50.0)),
-            (transform(wide_turn(rng), vector(rng, 50.0)), transform(tilt(rng), vector(rng, 50.0)), vector(rng, 0.05)),
+            *((T, transform(tilt(rng), vector(rng)), brought_near(T, rng)) for T in (transform(R, p) for p in far(rng))),
+            *((transform(R, p), transform(wide_turn(rng), p + vector(rng)), vector(rng)) for p in far(rng)),
+        ],
+        "the camera, the gripper or the object in whole numbers": [
+            (whole_numbers, G, p), (C, whole_numbers, p), (C, G, np.array([1, -2, 3])),
         ],
     }  # fmt: skip
     return [Case(family, args) for family, lists in families.items() for args in lists]

@@ -9,10 +9,16 @@ from scipy.spatial.transform import Rotation
 from transform_lab.judging.diagnosis import together
 
 from .cases import (
+    FAR,
+    SMALL,
+    almost_half_turns,
+    brought_near,
     either_sign,
+    far,
     from_roll_pitch_yaw,
+    half_turn,
     matrix,
-    near_half_turn,
+    near,
     orientation,
     pose,
     pose_of,
@@ -22,9 +28,12 @@ from .cases import (
     rotation,
     rotation_about,
     signed_permutations,
-    slanted_axis,
+    size,
+    small_turns,
     tilt,
+    transform,
     vector,
+    whole_pose,
     wide_turn,
     x_axis_upright,
 )
@@ -59,44 +68,66 @@ def _along_axes(rng):
 
 
 def _tilted(rng):
-    turns = tilt(rng), wide_turn(rng), rotation(rng), near_half_turn(rng, 1e-3), rotation_about(slanted_axis(rng), 5e-3)
-    return either_sign([pose(R, vector(rng)) for R in turns])
+    return either_sign(
+        [pose(R, vector(rng)) for R in (tilt(rng), wide_turn(rng), rotation(rng), tilt(rng), half_turn(rng))]
+    )
+
+
+def _almost_half_turned(rng):
+    return either_sign([pose(R, vector(rng)) for R in almost_half_turns(rng)])
+
+
+def _hardly_turned(rng):
+    """At the base's origin, or hardly off it."""
+    return either_sign([pose(R, p) for R, p in zip((np.eye(3), *small_turns(rng)), (np.zeros(3), *near(rng)))])
 
 
 def _far(rng):
-    return either_sign([pose(tilt(rng), vector(rng, 50.0)), pose(wide_turn(rng), vector(rng, 20.0))])
+    return either_sign([pose(R, p) for R, p in zip((tilt(rng), wide_turn(rng), tilt(rng)), far(rng))])
 
 
 def pre_grasp_cases(rng):
     tilted, others = _tilted(rng), _tilted(rng)
     odd = rng.uniform(0.111, 0.119)  # no whole number of centimetres
     return [
-        *(Case("an object turned by quarter turns", (object_pose,)) for object_pose in _along_axes(rng)),
+        *(Case("an object turned by quarter turns", (object_pose,)) for object_pose in (whole_pose(), *_along_axes(rng))),
         *(Case("an upright object, the notebook's among them", (object_pose,)) for object_pose in _upright(rng)),
         *(Case("a tilted object", args) for args in zip(tilted, (0.25, 0.1, 0.05, odd, 0.2))),
-        *(Case("another distance", args) for args in zip(tilted, (0.02, 1.0, odd, 0.1))),
-        *(Case("no distance, or a negative one: in front of the object", args) for args in zip(others, (0.0, -0.05))),
+        *(Case("another distance", args) for args in zip(tilted, (0.02, 1, odd, 0.1))),
+        *(Case("no distance, or a negative one: in front of the object", args) for args in zip(others, (0.0, -0.05, 0))),
+        *(Case("a short distance", (pose(rotation(rng), vector(rng)), s * size(rng, d))) for s, d in zip((1, -1) * 3, SMALL)),
         *(
             Case("a distance given by its name", (object_pose,), {"distance": distance})
             for object_pose, distance in zip((*others[2:], tilted[0]), (0.25, 0.02, 0.15, odd))
         ),
-        *(Case("an object far away", args) for args in zip(_far(rng), (0.3, 0.02))),
-    ]
+        *(Case("an object that is almost turned by a half turn", (p, 0.3)) for p in _almost_half_turned(rng)),
+        *(Case("an object hardly turned, almost at the base", (p, d)) for p, d in zip(_hardly_turned(rng), (0.2, *[3.0] * 6))),
+        *(Case("an object far away", args) for args in zip(_far(rng), (0.3, 0.02, 20.0))),
+        *(
+            Case("an object far away", (pose(R, distance * R[:, 0] + vector(rng)), distance))  # the answer is near
+            for R, distance in ((tilt(rng), size(rng, decade)) for decade in FAR)
+        ),
+    ]  # fmt: skip
 
 
 def waypoint_cases(rng):
     steps = np.array([[-0.1, 0.0, 0.0], [0.0, 0.05, 0.0], [0.1, 0.0, 0.2], [0.0, -0.2, 0.1]])
     tilted, offset = _tilted(rng), vector(rng, 0.3)
     return [
-        *(Case("an object turned by quarter turns", (frame, vector(rng, 0.5))) for frame in _along_axes(rng)),
+        *(Case("an object turned by quarter turns", (frame, vector(rng, 0.5))) for frame in (whole_pose(), *_along_axes(rng))),
         *(Case("an upright object, the notebook's among them", args) for args in zip(_upright(rng), steps)),
         *(Case("a tilted object", (object_pose, offset)) for object_pose in tilted),
         *(Case("a step along one axis of a tilted object, or none", args) for args in zip(tilted, 0.1 * np.eye(4, 3))),
+        Case("a step along one axis of a tilted object, or none", (tilted[4], np.array([1, 0, -2]))),
+        *(Case("a short step", (pose(rotation(rng), vector(rng)), step)) for step in near(rng)),
+        *(Case("an object that is almost turned by a half turn", (p, vector(rng))) for p in _almost_half_turned(rng)),
+        *(Case("an object hardly turned, almost at the base", (p, vector(rng, 3.0))) for p in _hardly_turned(rng)),
+        *(Case("an object far away, and long steps", args) for args in zip(_far(rng), (vector(rng, 0.01), *far(rng)[:2]))),
         *(
-            Case("an object far away, and steps of several sizes", (object_pose, vector(rng, length)))
-            for object_pose, length in zip(_far(rng), (20.0, 0.01))
+            Case("an object far away, and long steps", (pose(T[:3, :3], T[:3, 3]), brought_near(T, rng)))
+            for T in (transform(wide_turn(rng), p) for p in far(rng))
         ),
-    ]
+    ]  # fmt: skip
 
 
 # --- misconceptions: the two exercises differ in where the offset comes from only -------------------------------------

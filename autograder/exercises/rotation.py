@@ -7,7 +7,20 @@ from scipy.spatial.transform import Rotation
 from transform_lab.judging.diagnosis import together
 from transform_lab.judging.kinds import TOLERANCE
 
-from .cases import half_turn, quaternion, rotation, rotation_about, signed_permutations, slanted_axis, tilt, transform
+from .cases import (
+    SMALL,
+    half_turn,
+    quaternion,
+    rotation,
+    rotation_about,
+    signed_permutations,
+    size,
+    slanted_axis,
+    small_turns,
+    tilt,
+    transform,
+    whole,
+)
 from .equivalent import LISTS, MINUS_TRUE, NEAR_TOLERANCE, NUMPYS_NUMBERS, NUMPYS_TRUTH, SAME_SIZE
 from .specification import Case, Exercise, Misconception
 
@@ -24,10 +37,19 @@ def about_z_cases(rng):
         "a positive angle below 90 degrees": [30, 45.0, 60, rng.uniform(5, 85)],
         "a negative angle": [-30, -45.0, -rng.uniform(50, 85), -rng.uniform(95, 175)],
         "an angle between 90 and 360 degrees": [120, 210.0, rng.uniform(95, 175), rng.uniform(275, 355)],
-        "more than a full turn": [405, -750.0, rng.uniform(370, 440)],
-        "a fraction of a degree": [0.5, -0.25, rng.uniform(0.01, 0.1)],
-    }
+        "more than a full turn": [405, -750.0, rng.uniform(370, 440), _between_singles(size(rng, 3)), -size(rng, 3)],
+        "a fraction of a degree": [
+            0.5, -0.25, rng.uniform(0.01, 0.1), *(sign * size(rng, decade) for sign in (1, -1) for decade in (-4, -3, -2)),
+        ],
+        "a quarter turn, or a fraction of a degree more": [90, -90.0, *(90 + size(rng, d) for d in (-4, -3, -2, -1))],
+    }  # fmt: skip
     return [Case(family, (angle,)) for family, angles in families.items() for angle in angles]
+
+
+def _between_singles(angle):
+    """The number halfway between two neighbours in single precision that is nearest to an angle: who rounds to one is off."""
+    single = np.float32(angle)
+    return (float(single) + float(np.nextafter(single, np.float32(np.inf)))) / 2.0
 
 
 def _z_axis_lost(degrees):
@@ -273,11 +295,16 @@ def from_axes_cases(rng):
             rotation_about(axis, sign * rng.uniform(0.3, 1.3)) for axis in np.eye(3) for sign in (1, -1)
         ],
         "a tilted frame": [tilt(rng), rotation(rng), rotation(rng), half_turn(rng), rotation(rng)],
-        "a frame turned by a fraction of a degree": [
-            rotation_about(slanted_axis(rng), angle) for angle in (1e-2, 1e-3)
-        ],
+        "a frame turned by a fraction of a degree": small_turns(rng),
     }
-    return [Case(family, (R[:, 0], R[:, 1])) for family, matrices in families.items() for R in matrices]
+    cases = [Case(family, (R[:, 0], R[:, 1])) for family, matrices in families.items() for R in matrices]
+    (x, y, z), angle = np.eye(3), rng.uniform(0.3, 1.3)
+    slanted = np.cos(angle) * y + np.sin(angle) * z
+    return [
+        *cases,
+        *(Case("one axis given in whole numbers", args) for args in ((whole(x), slanted), (slanted, whole(x)))),
+        Case("one axis given in whole numbers", (whole(-z), whole(x))),
+    ]
 
 
 def _axes_with(third):
@@ -444,8 +471,16 @@ def is_rotation(R):
     return _close(R.T @ R, np.eye(3)) and np.linalg.det(R) > 0
 
 
+SLIGHT = 1.5e-7  # a relative change that every way to compare with 1e-6 lets pass, and none with 1e-7
+TOO_FAR = 4e-6  # one that none lets pass, and every one with 1e-5
+
+
 def is_rotation_cases(rng):
-    """Each family sets rotations against matrices that look like them, so that no one answer is right in a family."""
+    """Each family sets rotations against matrices that look like them, so that no one answer is right in a family.
+
+    The last ones break one property at a time, by as little as the tolerance allows to ask for, and in ways that are felt to
+    second order in all the others.
+    """
     along_axes = signed_permutations()
     mirror_normal = slanted_axis(rng)
     mirror = np.eye(3) - 2.0 * np.outer(mirror_normal, mirror_normal)
@@ -457,10 +492,16 @@ def is_rotation_cases(rng):
     changed = [half_turn(rng) for _ in range(3)]  # no entry of these is near zero, so any change shows
     for R in changed:
         R[rng.integers(3), rng.integers(3)] += 1e-3
+
+    def some():
+        return along_axes[rng.integers(24)] if rng.integers(2) else rotation(rng)
+
+    decades = TOO_FAR * 10.0 ** np.arange(4)
     families = {
         "a rotation, or a mirror image of one": [
-            rotation(rng), np.eye(3), half_turn(rng),
+            rotation(rng), np.eye(3), half_turn(rng), whole(along_axes[rng.integers(24)]),
             rotation(rng) @ np.diag([1.0, 1.0, -1.0]), -np.eye(3), mirror @ rotation(rng) * (1.0 - 1e-9),
+            whole(-along_axes[rng.integers(24)]),
         ],
         "a rotation, or one with two of its columns swapped": [
             np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]), rotation(rng).T,
@@ -468,9 +509,11 @@ def is_rotation_cases(rng):
         ],
         "a rotation, or axes that are not at right angles": [
             rotation(rng), tilt(rng), shear, rotation(rng) @ shear, leaning.T @ rotation(rng), *two_lean,
+            *(along_axes[rng.integers(24)] @ _all_lean(size) for size in (0.5, -0.3)),
         ],
         "a rotation, or one stretched along one axis and squeezed along another": [
             rotation(rng), along_axes[rng.integers(24)], stretch, stretch @ rotation(rng), rotation(rng) @ mild,
+            *(some() @ _stretched(first, size, -size) for first, size in zip((0, 1, 2, 0), decades)),
         ],
         "a rotation, or one made larger or smaller, as a whole or along one axis": [
             rotation(rng), tilt(rng), 2.0 * rotation(rng), 0.5 * rotation(rng), 1.01 * rotation(rng), np.zeros((3, 3)),
@@ -480,8 +523,45 @@ def is_rotation_cases(rng):
             rotation(rng) + rng.uniform(-1e-9, 1e-9, size=(3, 3)), tilt(rng) + rng.uniform(-1e-9, 1e-9, size=(3, 3)),
             half_turn(rng) + rng.uniform(-1e-9, 1e-9, size=(3, 3)), *changed,
         ],
+        "an axis whose length is off by less than 1e-6, or by more": [
+            *(some() @ _stretched(axis, sign * SLIGHT) for axis, sign in ((0, 1), (1, -1), (2, 1))),
+            *(some() @ _stretched(axis, sign * TOO_FAR) for axis in range(3) for sign in (1, -1)),
+            *(some() @ _stretched(axis, size) for axis, size in zip((0, 1, 2), decades[1:])),
+        ],
+        "two axes at right angles to less than 1e-6, or off by more": [
+            *(some() @ _leaning(axis, sign * 2 * SLIGHT) for axis, sign in ((0, 1), (1, -1), (2, 1))),
+            *(some() @ _leaning(axis, sign * 2 * TOO_FAR) for axis in range(3) for sign in (1, -1)),
+            *(some() @ _leaning(axis, -size) for axis, size in zip((1, 2, 0), decades[1:])),
+        ],
+        "three axes off by less than 1e-6, or by a little more, some one way and some the other": [
+            *(some() @ _all_lean(sign * SLIGHT) for sign in (1, -1)),
+            *(some() @ _leaning(1, size) @ _leaning(2, -size) for size in 2 * decades),
+            *(along_axes[rng.integers(24)] @ _all_lean(sign * size) for sign, size in zip((1, -1, 1, -1), 2 * decades)),
+            *(_leaning(axis, 2 * size).T @ some() for axis, size in zip((0, 1, 2), decades)),
+        ],
     }  # fmt: skip
     return [Case(family, (R,)) for family, matrices in families.items() for R in matrices]
+
+
+def _stretched(axis, size, next_size=0.0):
+    """No rotation: one axis (0, 1, 2) is longer than 1 by `size`, the next one by `next_size`."""
+    return np.diag(1.0 + np.roll([size, next_size, 0.0], axis))
+
+
+def _leaning(axis, size):
+    """No rotation: one axis (0, 1, 2) leans towards the next by `size` (their dot product); all have length 1.
+
+    The determinant and the lengths feel it to second order, or not at all.
+    """
+    E = np.eye(3)
+    E[(axis + 1) % 3, axis] = size
+    return E / np.linalg.norm(E, axis=0)
+
+
+def _all_lean(size):
+    """No rotation: all axes lean towards each other; columns and rows have length 1."""
+    E = np.eye(3) + size * (1.0 - np.eye(3))
+    return E / np.linalg.norm(E[0])
 
 
 def _right_angles_only(R):
@@ -719,6 +799,32 @@ def _others_rolled(q, kept):
     return np.insert(np.roll(np.delete(q, kept), 1), kept, q[kept])
 
 
+ALIKE = 4e-7  # how far q1 and q2 may be from each other: half the angle between them, too, is less than 1e-6
+
+
+def _shifted(q, by):
+    """q turned a little, by half as much in each of four numbers of one size."""
+    moved = q + 0.5 * by * q[::-1] * (1.0, -1.0, 1.0, -1.0) / np.abs(q)
+    return moved / np.linalg.norm(moved)
+
+
+def _around_zero(q, number):
+    """Pairs that are the same: where q has a 0, one of them has 2e-7 and the other -2e-7."""
+    if q[number]:
+        return
+    for sign in (1, -1):
+        one, other = q.copy(), q.copy()
+        one[number], other[number] = ALIKE / 2, -ALIKE / 2
+        yield one, sign * other
+
+
+def _unequal(q, number, by):
+    """q with a number a little larger in size, and the next as much smaller."""
+    changed = np.abs(q)
+    changed[[number, number + 1]] += by, -by
+    return np.copysign(changed, q)
+
+
 def same_rotation_cases(rng):
     def turn(axis, angle):
         return quaternion(rotation_about(axis, angle))
@@ -742,19 +848,21 @@ def same_rotation_cases(rng):
     positive = rng.permutation([0.40, 0.45, 0.55, 0.60])
     all_positive = [np.roll(positive, shift) / np.linalg.norm(positive) for shift in range(3)]
     positive_unit = all_positive[0]
-    # "About a degree" is 0.01 in the components and 5e-5 in the dot product: who compares the dot product with 1 in the
-    # way of `np.isclose` (relative tolerance 1e-5) has understood the matter, and is right here.
+    whole_q = np.array([0, 0, 0, 1])
+    even = np.array([0.5, 0.5, -0.5, 0.5]) * rng.choice([-1.0, 1.0], size=4)  # four numbers of one size
+    with_zeros = np.array([0.0, 0.6, -0.8, 0.0]), np.array([0.6, 0.0, 0.0, -0.8])
     families = {
-        "a quaternion and its negative": [(q[0], -q[0]), (-q[1], q[1]), (q[2], -q[2])],
+        "a quaternion and its negative": [(q[0], -q[0]), (-q[1], q[1]), (q[2], -q[2]), (whole_q, -whole_q)],
         "two half turns (w is 0)": [
             (first_half, -first_half), (-second_half, second_half), (first_half, second_half),
         ],
         "the same quaternion twice, or two unrelated ones": [
             (q[3], q[3]), (q[4], q[5]), (q[6], -q[7]), (-q[8], q[8]), (all_positive[0], all_positive[1]),
-            (-all_positive[1], all_positive[2]),
+            (-all_positive[1], all_positive[2]), (whole_q, q[0]), (whole_q, whole_q),
         ],
         "a turn and the opposite turn": [
             (tilted[0], tilted[0] * _OPPOSITE), (tilted[1], -tilted[1] * _OPPOSITE), (tilted[2], -tilted[2]),
+            *((turn(axis, size(rng, d)), turn(-axis, size(rng, d))) for d in SMALL),
         ],
         "two quaternions with one number in common, or about the same axis": [
             *((positive_unit, _others_rolled(positive_unit, kept)) for kept in range(4)),
@@ -764,6 +872,19 @@ def same_rotation_cases(rng):
         "two quaternions that differ by rounding, or by about a degree": [
             (q[9], nearby(q[9], 1e-9)), (q[0], -nearby(q[0], 1e-9)),
             (q[1], nearby(q[1], 0.01)), (q[2], -nearby(q[2], 0.01)),
+        ],
+        "two quaternions that differ by less than 1e-6, or by a little more": [
+            *((q[n], sign * nearby(q[n], ALIKE)) for n, sign in ((3, 1), (4, -1))),
+            *((q[n], sign * nearby(q[n], TOO_FAR * 10.0**d)) for d in range(3) for n, sign in ((5 + d, 1), (8 - d, -1))),
+            *((even, sign * _shifted(even, TOO_FAR)) for sign in (1, -1)),
+        ],
+        "two nearly the same, where a number is 0 but for rounding": [
+            *(pair for some in with_zeros for number in range(4) for pair in _around_zero(some, number)),
+            *_around_zero(np.array([0.0, 0.0, 0.0, 1.0]), 0),
+        ],
+        "two nearly the same, where two numbers are equal but for rounding": [
+            (_unequal(even, number, 1e-7), sign * _unequal(even, number, -1e-7))
+            for number, sign in ((0, 1), (1, -1), (2, 1))
         ],
     }  # fmt: skip
     return [Case(family, pair) for family, pairs in families.items() for pair in pairs]

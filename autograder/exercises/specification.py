@@ -4,8 +4,8 @@ One specification feeds everything: the public key that `check` reads in the not
 the diagnosis in feedback and report, and the tests that prove the grader.
 """
 
+import math
 import pickle
-from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from inspect import signature
@@ -24,7 +24,6 @@ ORDER = 1  # with the seed, what the order of the cases is drawn from
 DIGITS_OF_ARGUMENTS = 15  # decimals: nearly all there are, without the noise that sines and products leave at zero
 DIGITS = 12  # of right answers: far below the tolerance of 1e-6
 DIGITS_WRONG = 7  # of wrong ones, which are most of the key
-KEPT = 2  # answers of a misconception in each family of cases: of the others the key says no more than which parts are wrong
 PROTOCOL = 4  # of pickle; from 5 on, arrays do not own their numbers
 
 
@@ -96,9 +95,6 @@ def key(exercise: Exercise, seed: int) -> PlainExercise:
     as the specification has them.
     """
     cases = exercise.cases(np.random.default_rng(seed))
-    plain = [_case(exercise, case) for case in cases]
-    for index in range(len(exercise.misconceptions)):
-        _shorten(plain, index)
     order = range(len(cases)) if seed == PUBLIC_SEED else np.random.default_rng([seed, ORDER]).permutation(len(cases))
     return {
         "parameters": [str(p).partition("=")[0] for p in signature(exercise.reference).parameters.values()],
@@ -107,7 +103,7 @@ def key(exercise: Exercise, seed: int) -> PlainExercise:
         "credit": exercise.credit,
         "weights": {case.family: exercise.weights.get(case.family, 1) for case in cases},
         "misconceptions": [{"id": m.id, "says": m.says, "hint": m.hint} for m in exercise.misconceptions],
-        "cases": [plain[number] for number in order],
+        "cases": [_case(exercise, cases[number]) for number in order],
     }
 
 
@@ -171,19 +167,6 @@ def _untold(misconception, args, kwargs):
     return None
 
 
-def _shorten(cases, index):
-    """Keep the first answers of a misconception in each family, and of the others which of their parts are wrong.
-
-    A dozen answers with all their numbers tell a misconception from all others; all of them would be most of the key.
-    """
-    kept = Counter()
-    for case in cases:
-        wrong = case["wrong"][index] or {}
-        kept[case["family"]] += "parts" in wrong
-        if "parts" in wrong and kept[case["family"]] > KEPT:
-            case["wrong"][index] = {"not": list(wrong["parts"])}
-
-
 def _wrong_answer(returns, misconception, fresh, right):
     """The answer of a misconception as the key has it; see PlainCase."""
     answer = _answer(misconception.wrong, fresh)
@@ -195,8 +178,11 @@ def _wrong_answer(returns, misconception, fresh, right):
         got = parts_of(returns, codec.decode(answer))
     except Unfit:
         return {"unfit": _rounded(answer, DIGITS_WRONG)}
-    wrong = [name for name, part in KINDS[returns].parts.items() if not part.agree(got[name], right[name])]
-    return {"parts": {name: _rounded(got[name].ravel().tolist(), DIGITS_WRONG) for name in wrong}} if wrong else None
+    told = [
+        None if part.agree(got[name], right[name]) else _short(part.fingerprint(got[name]))
+        for name, part in KINDS[returns].parts.items()
+    ]
+    return told if any(fingerprint is not None for fingerprint in told) else None
 
 
 def _answer(function, fresh):
@@ -206,6 +192,12 @@ def _answer(function, fresh):
             return _rounded(codec.encode(function(*args, **kwargs)))
         except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError, np.linalg.LinAlgError) as error:
             return {"raises": type(error).__name__}
+
+
+def _short(number):
+    """A number in as few characters as the tolerance allows, which is relative beyond 1."""
+    short = round(number, DIGITS_WRONG - max(0, math.frexp(number)[1] * 3 // 10))
+    return int(short) if short.is_integer() else short
 
 
 def _rounded(plain, digits=DIGITS):

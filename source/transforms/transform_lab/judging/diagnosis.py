@@ -81,6 +81,10 @@ ADVICE = (  # for errors whose message says little to a beginner: (pattern, what
 )
 
 
+OPEN = object()  # a part of an answer that may be anything
+WRONG = object()  # one that is wrong, in whatever way
+
+
 class Diagnosis(NamedTuple):
     """ids of the misconceptions (none when nothing explains the answers), what they show, and what helps."""
 
@@ -183,12 +187,17 @@ def _equals(wrong, returns, reply, outcome):
         return reply.outcome == "raised" and reply.error.partition(":")[0] == raises
     if outcome.got is None:
         return reply.outcome == "returned" and "unfit" in wrong and same(returns, reply.value, wrong["unfit"])
-    return "parts" in wrong and all(
-        part.agree(outcome.got[name], numbers_of(wrong["parts"][name], outcome.got[name]))
-        if name in wrong["parts"]
-        else name in outcome.parts
-        for name, part in KINDS[returns].parts.items()
+    return isinstance(wrong, list) and all(
+        _as_told(part, name, fingerprint, outcome)
+        for (name, part), fingerprint in zip(KINDS[returns].parts.items(), wrong)
     )
+
+
+def _as_told(part, name, fingerprint, outcome):
+    """Whether a part of an answer is what the key tells of a misconception's: its fingerprint, None where it is right, WRONG."""
+    if fingerprint is None or name in outcome.parts:
+        return fingerprint is None and name in outcome.parts
+    return fingerprint is WRONG or part.has(outcome.got[name], fingerprint)
 
 
 def _broke_down(outcome):
@@ -197,25 +206,18 @@ def _broke_down(outcome):
     return identifier == "not-finite" or (identifier == "" and re.match(NO_NUMBER, what) is not None)
 
 
-def numbers_of(flat, like):
-    """A part of a wrong answer in the key, as an array of the shape of `like`."""
-    return np.array(flat).reshape(like.shape)
-
-
 def error_of(wrong):
     """The name of the exception that a misconception's answer in the key stands for, or None."""
     return wrong.get("raises") if isinstance(wrong, dict) else None
 
 
 def open_parts_of(wrong):
-    """The parts of a misconception's answer whose numbers the key does not tell: they hang on how they are computed, or
-    there are enough others.
-    """
+    """The parts of the answer whose numbers hang on how exactly a misconception computes them."""
     return set(wrong.get("any", wrong.get("not", ()))) if isinstance(wrong, dict) else set()
 
 
 def has_to_be_wrong(wrong):
-    """Whether the parts whose numbers the key does not tell are wrong, each of them; else they may be anything."""
+    """Whether these parts are wrong, each of them, whatever they are; else they may be anything."""
     return isinstance(wrong, dict) and "not" in wrong
 
 
@@ -241,8 +243,6 @@ def _general(problems, replies, tell):
 
 # --- two mistakes at once -------------------------------------------------------------------------------------------
 
-WRONG = object()  # a part of an answer of which the key tells that it is wrong, and no more
-
 
 def _part_by_part(exercise, outcomes):
     """The Diagnosis of the wrong parts of the answer by themselves, together.
@@ -266,27 +266,19 @@ def _part_by_part(exercise, outcomes):
 def _partial_explanations(exercise, outcomes):
     """{parts that they touch: [misconceptions that explain the answers in these parts]}"""
     parts, found, loosely = KINDS[exercise["returns"]].parts, {}, {}
-    expected = [parts_of(exercise["returns"], codec.decode(case["expected"])) for case in exercise["cases"]]
     for index, misconception in enumerate(exercise["misconceptions"]):
-        wrong = _parts_of_misconception(index, exercise, expected)
-        touched = frozenset(
-            name
-            for answer, right in zip(wrong, expected)
-            for name, part in parts.items()
-            if answer[name] is None or answer[name] is WRONG or not part.agree(answer[name], right[name])
-        )
+        told = [_of_each_part(case["wrong"][index], parts) for case in exercise["cases"]]
+        if not all(told):
+            continue
+        touched = frozenset(name for one in told for name, what in one.items() if what is not None)
         if touched and all(
-            answer[name] is None
-            or (
-                name not in outcome.parts
-                if answer[name] is WRONG
-                else parts[name].agree(outcome.got[name], answer[name])
-            )
-            for outcome, answer in zip(outcomes, wrong)
+            one[name] is OPEN or _as_told(parts[name], name, one[name], outcome)
+            for outcome, one in zip(outcomes, told)
             for name in touched
         ):
-            exact = all(part is not None for answer in wrong for part in answer.values())
+            exact = not any(what is OPEN for one in told for what in one.values())
             (found if exact else loosely).setdefault(touched, []).append(misconception)
+    expected = [parts_of(exercise["returns"], codec.decode(case["expected"])) for case in exercise["cases"]]
     for name, part in parts.items():
         pairs = [(outcome.got[name], right[name]) for outcome, right in zip(outcomes, expected)]
         for identifier, fits in (("not-normalised", _not_normalised), ("rounded", _rounded)):
@@ -296,25 +288,17 @@ def _partial_explanations(exercise, outcomes):
     return loosely | found
 
 
-def _parts_of_misconception(index, exercise, expected):
-    """This misconception's answers, each as its parts, None for one that may be anything, WRONG for one that is not right.
+def _of_each_part(wrong, parts):
+    """What the key tells of a misconception's answer, {part: None where it is right, its fingerprint, OPEN, WRONG}.
 
-    Nothing when one of the answers cannot be taken apart.
+    None for an answer that cannot be taken apart.
     """
-    answers = []
-    for case, right in zip(exercise["cases"], expected):
-        wrong = case["wrong"][index]
-        if error_of(wrong):
-            return []
-        if open_parts := open_parts_of(wrong):
-            untold = WRONG if has_to_be_wrong(wrong) else None
-            answers.append({part: untold if part in open_parts else value for part, value in right.items()})
-            continue
-        if wrong is not None and "unfit" in wrong:
-            return []
-        changed = {} if wrong is None else wrong["parts"]
-        answers.append(right | {name: numbers_of(flat, right[name]) for name, flat in changed.items()})
-    return answers
+    if open_parts := open_parts_of(wrong):
+        what = WRONG if has_to_be_wrong(wrong) else OPEN
+        return {name: what if name in open_parts else None for name in parts}
+    if isinstance(wrong, dict):
+        return None
+    return dict(zip(parts, wrong or [None] * len(parts)))
 
 
 def _not_normalised(part, pairs):

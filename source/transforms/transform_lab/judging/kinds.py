@@ -12,6 +12,8 @@ from ..messages import Point, Pose, Quaternion
 from . import lines, reading
 
 TOLERANCE = 1e-6  # absolute up to 1 (metre, or component of a unit vector), relative beyond
+# No sum of these with whole-numbered factors is zero, so that answers that differ have other fingerprints.
+WEIGHTS = np.sqrt([2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0, 19.0, 23.0]) / 5.0
 
 
 @dataclass(frozen=True)
@@ -32,6 +34,17 @@ class Part:
         if self.quaternion:
             return bool(min(np.abs(got - expected).max(), np.abs(got + expected).max()) <= TOLERANCE)
         return bool(np.all(np.abs(got - expected) <= TOLERANCE * np.maximum(1.0, np.abs(expected))))
+
+    @staticmethod
+    def fingerprint(numbers):
+        """One number for a value, by which a misconception's answer is known: a whole one would make a large key."""
+        return float(numbers.ravel() @ WEIGHTS[: numbers.size])
+
+    def has(self, got, fingerprint):
+        """Whether a value has this fingerprint, to the tolerance of its numbers."""
+        room = TOLERANCE * self.fingerprint(np.maximum(1.0, np.abs(got)))
+        signs = (1, -1) if self.quaternion else (1,)
+        return any(abs(sign * self.fingerprint(got) - fingerprint) <= room for sign in signs)
 
     def off(self, got, expected):
         """How far a value is off, in words: "off by 0.1 m"."""
