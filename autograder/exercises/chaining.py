@@ -398,6 +398,18 @@ def _quaternion_product(row, column):
     return wrong
 
 
+def _cross_product_reversed(number):
+    """The product of quaternions with two signs wrong in one number: the cross product's."""
+
+    def wrong(T, pose_in_b):
+        first, second = quaternion(T[:3, :3]), orientation(pose_in_b)
+        result = product(first, second)
+        result[number] -= 2.0 * np.cross(first[:3], second[:3])[number]
+        return result
+
+    return wrong
+
+
 def _with_positive_w(q):
     return np.append(q[:3], abs(q[3]))
 
@@ -593,6 +605,7 @@ TRANSFORM_POSE = Exercise(
             for row in range(4)
             for column in range(4)
         ),
+        *(Misconception("formula-slip", _with_orientation(_cross_product_reversed(k)), *ONE_SIGN) for k in range(3)),
         Misconception(
             "sign-ignored",
             _with_orientation(lambda T, p: _with_positive_w(product(quaternion(T[:3, :3]), orientation(p)))),

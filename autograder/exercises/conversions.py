@@ -180,6 +180,12 @@ def _formula(q):
     return v, np.outer(v, v), w * skew(v)
 
 
+def by_tangents(q):
+    """Cayley's formula, of x, y and z divided by w."""
+    K = skew(q[:3] / q[3])
+    return np.linalg.inv(np.eye(3) - K) @ (np.eye(3) + K)
+
+
 def _sign_slip(i, j):
     """The matrix with one sign wrong in an entry beside the diagonal."""
 

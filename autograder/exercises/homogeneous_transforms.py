@@ -44,11 +44,11 @@ from .conversions import (
     angle_not_halved,
     at_half_turns,
     axis_and_angle,
+    by_tangents,
     from_euler,
     half_turn_by_tolerance,
     lengths_with_signs,
     near_half_turns,
-    skew,
     slips,
     trace_formula,
     trace_formula_guarded,
@@ -588,12 +588,6 @@ def _planar(q):
     return Rotation.from_euler("z", 2.0 * math.atan2(q[2], q[3])).as_matrix()
 
 
-def _by_tangents(q):
-    """Cayley's formula, of x, y and z divided by w."""
-    K = skew(q[:3] / q[3])
-    return np.linalg.inv(np.eye(3) - K) @ (np.eye(3) + K)
-
-
 def _from_pose_with_translation(of):
     """`pose_to_transform` of someone whose rotation is right, and whose translation is `of(R, position)`."""
     return lambda pose: make_transform(matrix(pose)[:3, :3], of(matrix(pose)[:3, :3], position(pose)))
@@ -715,7 +709,7 @@ POSE_TO_TRANSFORM = Exercise(
         *(Misconception("formula-slip", _from_pose_with(of), *ONE_ENTRY) for of in slips(0, 1, 2)),
         Misconception(
             "half-turn-missed",
-            _from_pose_with(_by_tangents),
+            _from_pose_with(by_tangents),
             "The rotation goes wrong at half turns, where w is 0.",
             "Your formula divides by w: which of the quaternion's numbers can be 0? The usual one divides by none of them.",
             **open_where(near_half_turns, at_half_turns, matrix, ("rotation",)),

@@ -37,7 +37,17 @@ from .cases import (
     wide_turn,
     x_axis_upright,
 )
-from .conversions import BEYOND_120, BY_ANGLES, BY_TRACE, ORDERS, TURNED_WITH_A_TERM_MISSING, slips
+from .conversions import (
+    BEYOND_120,
+    BY_ANGLES,
+    BY_TRACE,
+    ORDERS,
+    TURNED_WITH_A_TERM_MISSING,
+    at_half_turns,
+    by_tangents,
+    near_half_turns,
+    slips,
+)
 from .equivalent import MAKING_A_POSE, READING_A_POSE, UPPER_LEFT
 from .homogeneous_transforms import ENTRY_BY_ENTRY, NO_ORIENTATION, QUATERNION_ORDER, at_lock, open_where
 from .specification import Case, Exercise, Misconception
@@ -195,6 +205,17 @@ def _moved_by(step):
     return wrong
 
 
+def _with_sign_of_w(object_pose, offset):
+    """Makes w positive by its sign, which is 0 where w is: four zeros are left of the quaternion, and nothing is turned."""
+    if orientation(object_pose)[3]:
+        return waypoint(object_pose, offset)
+    return pose_of(position(object_pose) + offset, (0, 0, 0, 0))
+
+
+AT_HALF_TURNS = (
+    "The answer goes wrong for objects that are turned by half a turn, where the quaternion's w is 0.",
+    "What does your function do with w: is something divided by it, or multiplied by its sign?",
+)
 ONE_TERM = (
     "The offset is not turned quite right: a sign or a term of the formula with the quaternion's numbers is missing.",
     "Turning changes no length: which offsets come out longer or shorter than they were?",
@@ -297,6 +318,15 @@ SHARED: tuple[Misconception, ...] = (
         _open("position", x_axis_upright),  # where there is no yaw
     ),
     Misconception("yaw-only", _yaw_of_quaternion, *UPRIGHT_ONLY),
+    Misconception(
+        "half-turn-missed",
+        _moved_by(lambda q, offset: by_tangents(q) @ offset),
+        *AT_HALF_TURNS,
+        **open_where(
+            near_half_turns, at_half_turns, lambda object_pose, offset: matrix(object_pose), parts=("position",)
+        ),
+    ),
+    Misconception("half-turn-missed", _with_sign_of_w, *AT_HALF_TURNS),
     *(
         Misconception("formula-slip", _moved_by(lambda q, offset, turned=turned: turned(q, offset)), *ONE_TERM)
         for turned in TURNED_WITH_A_TERM_MISSING

@@ -603,9 +603,19 @@ SIZE_OF_THE_DIFFERENCE = (
     "You accept what is smaller than it has to be: a difference counts whether it is positive or negative.",
     "Try your function on a rotation multiplied by 0.5. How large is a difference of -0.75?",
 )
-OFF_BY_A_THOUSANDTH = (
-    "You accept matrices that are off by a thousandth.",
-    "Your tolerance is too generous: the docstring says how close is close enough.",
+TOO_GENEROUS = (
+    "You accept matrices that are off by more than 1e-6.",
+    "Your tolerance is too generous: the docstring says how close is close enough. Mind that squares of small numbers are tiny.",
+)
+
+
+NUMPYS_TOLERANCE = (
+    "Your tolerance is not 1e-6: it is narrower for small numbers, or wider for large ones.",
+    "`np.allclose` and `np.isclose` add up an absolute and a relative tolerance: what are the two when you do not give them?",
+)
+ERRORS_CANCEL = (
+    "You add up differences, and those of opposite signs cancel.",
+    "Two numbers that are off by 0.1 and by -0.1 are off all the same: look at the size of each difference.",
 )
 
 
@@ -614,21 +624,29 @@ def _off(R):
     return np.abs(R.T @ R - np.eye(3)).max()
 
 
-def _within(tolerance):
-    """Whether R is a rotation to another tolerance, and where it hangs on how that is measured."""
+def _within(tolerance, room=5.0):
+    """A test of R.T @ R with another tolerance, and where it hangs on how that is measured."""
     return {
         "wrong": lambda R: _off(R) <= tolerance and np.linalg.det(R) > 0,
-        "varies": lambda R: ("answer",) if tolerance / 20 < _off(R) < 20 * tolerance else (),
+        "varies": lambda R: ("answer",) if tolerance / room < _off(R) < room * tolerance else (),
     }
 
 
-def _determinant_within(tolerance):
+def _determinant_within(tolerance, room=5.0):
+    """A right test of R.T @ R, and another tolerance of the determinant."""
+
+    def off(R):
+        return abs(np.linalg.det(R) - 1.0)
+
     return {
-        "wrong": lambda R: is_rotation(R) and abs(np.linalg.det(R) - 1.0) <= tolerance,
-        "varies": lambda R: (
-            ("answer",) if is_rotation(R) and tolerance / 5 < abs(np.linalg.det(R) - 1.0) < 5 * tolerance else ()
-        ),
+        "wrong": lambda R: is_rotation(R) and off(R) <= tolerance,
+        "varies": lambda R: ("answer",) if is_rotation(R) and tolerance / room < off(R) < room * tolerance else (),
     }
+
+
+def _allclose(product, **tolerances):
+    """A test by np.allclose, which has tolerances of its own where none are given."""
+    return lambda R: np.allclose(product(R), np.eye(3), **tolerances) and np.linalg.det(R) > 0
 
 
 IS_ROTATION = Exercise(
@@ -690,18 +708,25 @@ IS_ROTATION = Exercise(
         ),
         *(
             Misconception("exact-comparison", says=DIGIT_BY_DIGIT[0], hint=DIGIT_BY_DIGIT[1], **fields)
-            for fields in (
-                *(_within(tolerance) for tolerance in (1e-11, 1e-13, 1e-15)),
-                *(_determinant_within(tolerance) for tolerance in (1e-11, 1e-13, 1e-15)),
-            )
+            for tolerance in (3e-8, 1e-9, 1e-11, 1e-15)
+            for fields in (_within(tolerance), _determinant_within(tolerance))
         ),
         *(
-            Misconception(
-                "loose-comparison",
-                lambda R, tolerance=tolerance: _close(R.T @ R, np.eye(3), tolerance) and np.linalg.det(R) > 0,
-                *OFF_BY_A_THOUSANDTH,
+            Misconception("loose-comparison", says=TOO_GENEROUS[0], hint=TOO_GENEROUS[1], **fields)
+            for tolerance in (1e-5, 1e-4, 1e-3, 0.01, 0.03, 0.1)
+            for fields in (_within(tolerance, room=1.0), _within(tolerance))
+        ),
+        *(
+            Misconception("default-tolerance", _allclose(product, **tolerances), *NUMPYS_TOLERANCE)
+            for product in (lambda R: R.T @ R, lambda R: R @ R.T)
+            for tolerances in ({}, {"atol": 1e-6}, {"rtol": 1e-6})
+        ),
+        *(
+            Misconception("errors-cancel", wrong, *ERRORS_CANCEL)
+            for wrong in (
+                lambda R: abs(np.sum(R.T @ R - np.eye(3))) <= TOLERANCE and np.linalg.det(R) > 0,
+                lambda R: abs(np.sum(R.T @ R - np.eye(3))) <= TOLERANCE and _close(np.linalg.det(R), 1.0),
             )
-            for tolerance in (0.01, 0.03, 0.1)
         ),
         Misconception("determinant-only", lambda R: np.linalg.det(R) > 0, *POSITIVE_DETERMINANT),
         Misconception(
@@ -733,11 +758,21 @@ IS_ROTATION = Exercise(
             "You check that the axes are at right angles, but not that each has length 1.",
             "Try your function on a rotation multiplied by 2.",
         ),
-        Misconception(
-            "angles-ignored",
-            _unit_columns_only,
-            "You check that each axis has length 1, but not that the axes are at right angles.",
-            "Try your function on three unit vectors that lean towards each other.",
+        *(
+            Misconception(
+                "angles-ignored",
+                wrong,
+                "You check that each axis has length 1, but not that the axes are at right angles.",
+                "Try your function on three unit vectors that lean towards each other, by much and by little.",
+            )
+            for wrong in (
+                _unit_columns_only,
+                lambda R: _unit_columns_only(R) and _unit_columns_only(R.T),
+                lambda R: _unit_columns_only(R) and _close(np.linalg.det(R), 1.0),
+                lambda R: _unit_columns_only(R.T) and _close(np.linalg.det(R), 1.0),
+                lambda R: _unit_columns_only(R.T),
+                lambda R: _close(np.sum(R**2), 3.0) and _close(np.linalg.det(R), 1.0),
+            )
         ),
         *(
             Misconception(
@@ -775,6 +810,12 @@ IS_ROTATION = Exercise(
                 "How many pairs do three axes make? Count those that your function compares.",
             )
             for pair in ({0, 2}, {0, 1}, {1, 2})
+        ),
+        Misconception(
+            "pair-not-compared",
+            lambda R: _close(np.linalg.norm(R[:, :2], axis=0), 1.0) and _close(np.cross(R[:, 0], R[:, 1]), R[:, 2]),
+            "You do not ask whether x and y are at right angles.",
+            "Two unit vectors that lean a little towards each other have a cross product of nearly length 1.",
         ),
         Misconception(
             "reflection-accepted;exact-comparison",
@@ -899,6 +940,11 @@ def _made_positive(index):
     return lambda q1, q2: _close(upper(q1), upper(q2))
 
 
+def _apart(q1, q2):
+    """How far two orientations are apart, in the number that differs most."""
+    return min(np.abs(q1 - q2).max(), np.abs(q1 + q2).max())
+
+
 def _same_axis(q1, q2):
     return _close(np.cross(q1[:3], q2[:3]), 0.0)
 
@@ -920,13 +966,17 @@ SIGNS_DROPPED = (
     "You drop the sign of each number by itself, and so take some different orientations for the same.",
     "Either all four signs differ or none does; what if only some of them do?",
 )
-A_DEGREE_APART = (
-    "You take orientations for the same that are a degree apart.",
+NOT_THE_SAME = (
+    "You take orientations for the same that are further apart than 1e-6.",
     "Your tolerance is too generous. Mind that the dot product of unit vectors hardly changes at small angles.",
 )
+SIGN_OF_ONE = (
+    "You decide between q and -q by the sign of one of the numbers, and that number can be 0 but for rounding.",
+    "Compare in a way that does not need the sign of any one number.",
+)
 SIGN_OF_W = (
-    "You make w positive first, and that does not decide between q and -q when w is 0.",
-    "What is the sign of w for a half turn? Compare in a way that does not need it.",
+    "You go by w, and that does not decide between q and -q when w is 0, or hardly more.",
+    "What is the sign of w for a half turn, and what comes of a division by it? Compare in a way that does not need w alone.",
 )
 ANGLE_ONLY = (
     "You compare the angles only: w says how far a rotation turns, not about what.",
@@ -980,21 +1030,54 @@ SAME_ROTATION = Exercise(
                 lambda q1, q2, one=one, other=other: _close(q1, q2, one) or _close(q1, -q2, other),
                 *NO_TOLERANCE,
             )
-            for one, other in ((0.0, 0.0), (0.0, TOLERANCE), (TOLERANCE, 0.0))
+            for one, other in ((0.0, 0.0), (0.0, TOLERANCE), (TOLERANCE, 0.0), (1e-8, TOLERANCE), (TOLERANCE, 1e-8))
         ),
         Misconception(
             "exact-comparison",
             lambda q1, q2: abs(q1 @ q2) == 1.0,
             *NO_TOLERANCE,
             varies=lambda q1, q2: ("answer",) if abs(abs(q1 @ q2) - 1.0) < 1e-14 else (),
-            fails=lambda q1, q2: ("answer",) if 1e-14 < abs(abs(q1 @ q2) - 1.0) < 1e-11 else (),
+            fails=lambda q1, q2: ("answer",) if same_rotation(q1, q2) and 1.0 - abs(q1 @ q2) > 1e-14 else (),
         ),
         *(
-            Misconception("loose-comparison", wrong, *A_DEGREE_APART)
+            Misconception(
+                "exact-comparison",
+                lambda q1, q2, tolerance=tolerance: _close(q1, q2, tolerance) or _close(q1, -q2, tolerance),
+                *NO_TOLERANCE,
+            )
+            for tolerance in (1e-7, 1e-11)
+        ),
+        *(
+            Misconception("loose-comparison", wrong, *NOT_THE_SAME)
+            for tolerance in (1e-5, 1e-4, 1e-3, 0.02)
             for wrong in (
-                lambda q1, q2: abs(q1 @ q2) > 0.999,
-                lambda q1, q2: same_rotation(q1, q2) or _close(q1, q2, 0.02),
-                lambda q1, q2: same_rotation(q1, q2) or _close(q1, -q2, 0.02),
+                lambda q1, q2, at=tolerance: _close(q1, q2, at) or _close(q1, -q2, at),
+                lambda q1, q2, at=tolerance: _close(q1, q2, at) or _close(q1, -q2),
+                lambda q1, q2, at=tolerance: _close(q1, q2) or _close(q1, -q2, at),
+            )
+        ),
+        *(
+            Misconception(
+                "loose-comparison", lambda q1, q2, tolerance=tolerance: abs(q1 @ q2) > 1.0 - tolerance, *NOT_THE_SAME
+            )
+            for tolerance in (1e-3, 1e-5, 1e-6, 1e-8, 1e-9, 1e-10)
+        ),
+        *(
+            Misconception(
+                "default-tolerance",
+                lambda q1, q2, tolerances=tolerances: (
+                    np.allclose(q1, q2, **tolerances) or np.allclose(q1, -q2, **tolerances)
+                ),
+                *NUMPYS_TOLERANCE,
+            )
+            for tolerances in ({}, {"atol": 1e-6}, {"rtol": 1e-6})
+        ),
+        *(
+            Misconception("sign-of-one-number", wrong, *SIGN_OF_ONE)
+            for wrong in (
+                _made_positive(1),
+                _made_positive(2),
+                lambda q1, q2: _close(*(q * np.sign(q[np.flatnonzero(q)[0]]) for q in (q1, q2))),
             )
         ),
         *(
@@ -1037,7 +1120,19 @@ SAME_ROTATION = Exercise(
             for wrong in (
                 _made_positive(3),
                 lambda q1, q2: _close(np.sign(q1[3]) * q1, np.sign(q2[3]) * q2),  # where w is 0, all four are
+                lambda q1, q2: (
+                    same_rotation(q1, q2) if 0 in (q1[3], q2[3]) else _close(q1, q2 * np.sign(q1[3] * q2[3]))
+                ),
             )
+        ),
+        Misconception(
+            "half-turn-missed",
+            _made_positive(3),
+            *SIGN_OF_W,
+            varies=lambda q1, q2: (
+                ("answer",) if 1e-8 < _apart(q1, q2) < 1e-4 or min(abs(q1[3]), abs(q2[3])) < 1e-6 else ()
+            ),
+            fails=lambda q1, q2: ("answer",) if q1[3] == q2[3] == 0 and np.array_equal(q1, -q2) else (),
         ),
         Misconception(
             "half-turn-missed",

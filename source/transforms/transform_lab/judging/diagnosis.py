@@ -167,7 +167,8 @@ def _fit(index, exercise, replies, outcomes):
             if not outcome.answered:
                 return 0
         elif open_parts := open_parts_of(wrong):
-            if not _broke_down(outcome) and not parts - open_parts <= outcome.parts:
+            came_to_nothing = outcome.got is None and _broke_down(outcome)
+            if not came_to_nothing and not parts - open_parts <= outcome.parts:
                 return 0
             if not has_to_be_wrong(wrong):
                 is_open = True

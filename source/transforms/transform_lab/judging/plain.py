@@ -9,11 +9,11 @@ class PlainCase(TypedDict):
     """The arguments of one call, with the right answer to them and the wrong ones.
 
     family: which kind of case it is, in a student's words
-    wrong: what each misconception of the exercise would answer: null where it happens to be right; else a list with the fingerprint
-        of each part of the answer (see kinds.Part), null for a part that is right; {"unfit": plain data} where it is no answer of
-        the kind, {"raises": name of the exception} where it raises, {"any": [parts of the answer]} where these may be anything,
-        {"not": [parts]} where each of these is wrong, in whatever way.
-        Left out where only right answers are told (public_example.py)
+    wrong: what each misconception of the exercise would answer: null where it happens to be right; else a list with the
+        fingerprint of each part of the answer (see kinds.Part), null for a part that is right; {"unfit": plain data} where it is
+        no answer of the kind, {"raises": name of the exception} where it raises, {"any": [parts of the answer]} where these may
+        be anything, {"not": [parts]} where each of these is wrong, in whatever way. Left out where only right answers are told
+        (public_example.py)
     """
 
     family: str
