@@ -34,7 +34,17 @@ from .cases import (
     whole_pose,
     wide_turn,
 )
-from .conversions import BEYOND_120, BY_TRACE, ORDERS, from_euler, near_half_turns, product, rotation_vector
+from .conversions import (
+    BEYOND_120,
+    BY_ANGLES,
+    BY_BRANCHES,
+    BY_TRACE,
+    ORDERS,
+    from_euler,
+    near_half_turns,
+    product,
+    rotation_vector,
+)
 from .equivalent import MAKING_A_POSE, READING_A_POSE
 from .homogeneous_transforms import (
     BOTTOM_ROW,
@@ -563,7 +573,7 @@ TRANSFORM_POSE = Exercise(
                 *says,
                 **open_where(varies, fails, lambda T, p: T @ matrix(p)),
             )
-            for identifier, says, wrong, varies, fails in (BY_TRACE, BEYOND_120)
+            for identifier, says, wrong, varies, fails in (BY_TRACE, BEYOND_120, BY_ANGLES, *BY_BRANCHES)
         ),
         *(
             Misconception(
