@@ -319,8 +319,8 @@ def transform_pose_cases(rng):
     far_away = [transform(tilt(rng), p) for p in far(rng)]
     families = {
         "frames turned by quarter turns": [
-            (transform(R, vector(rng)), pose(S, vector(rng))) for R, S in zip(shuffled[:12], shuffled[12:])
-        ],
+            (transform(R, vector(rng)), pose(R.T @ S, vector(rng))) for R, S in zip(shuffled, along_axes)
+        ],  # each of the 24 comes out once
         "tilted frames": [
             (T, p),
             (T, generic_pose(rng)),
