@@ -440,7 +440,7 @@ PRE_GRASP = Exercise(
             "zero-taken-for-missing",
             lambda object_pose, distance=0.1: pre_grasp(object_pose, distance or 0.1),
             "A distance of 0 is taken for 0.1.",
-            "0 is a distance, too, though Python takes it for False: what tells a distance that is missing from one that is 0?",
+            "A distance of 0 is one, too, though Python takes it for False: what tells it from one that is missing?",
         ),
         Misconception(
             "towards-the-base",
