@@ -299,7 +299,7 @@ def prove(options):
     console.print(show.summary(proofs, len(drawn)))
     for proof in proofs:
         if options.exercises:
-            console.print("", show.misconceptions(proof), sep="\n")
+            console.print("", show.misconceptions(proof), "", show.features(proof), "", show.shortcuts(proof), sep="\n")
         for line in show.open_points(proof, here.root):
             console.print(line)
     number = sum(proof.open for proof in proofs)

@@ -46,6 +46,24 @@ def half_turn(rng, largest=None):
     return 2.0 * np.outer(axis, axis) - np.eye(3)
 
 
+def half_turn_to_rounding(rng):
+    """A half turn about a slanted axis whose trace is a little more than -1, as it comes out of most computations."""
+    while True:
+        axis = slanted_axis(rng)
+        R = (2.0 * np.outer(axis, axis) - np.eye(3)).round(15)
+        if np.trace(R) > -1.0:
+            return R
+
+
+def half_turns_about_almost_an_axis():
+    """Half turns about a coordinate axis that leans towards another by 6e-7, each towards each.
+
+    A formula that divides by the small component loses all digits, and one that compares only some of the diagonal's entries
+    chooses it.
+    """
+    return [rotation_about(np.eye(3)[one] + 6e-7 * np.eye(3)[other], np.pi) for one, other in permutations(range(3), 2)]
+
+
 def almost_half_turns(rng):
     """Turns about slanted axes that are short of a half turn by an angle in each decade below 1 radian.
 
@@ -84,11 +102,11 @@ def vector(rng, length=1.0):
 
 
 def size(rng, decade):
-    """A length (metres) or an angle (radians) in [10^decade, 10^(decade + 1)), as large as `vector` may make it longer.
+    """A length (metres) or an angle (radians) in [10^decade, 10^(decade + 1)).
 
-    In the upper half of the decade, so that in the lowest one, too, half an angle is more than the tolerance of 1e-6.
+    A `vector` of this length is in the decade, too, and so are x, y and z of the quaternion of one of the `small_turns`.
     """
-    return rng.uniform(5.0, 7.5) * 10.0**decade
+    return rng.uniform(6.0, 7.5) * 10.0**decade
 
 
 def far(rng):
@@ -103,7 +121,8 @@ def near(rng):
 
 def small_turns(rng):
     """Turns about slanted axes by an angle in each decade of SMALL."""
-    return [rotation_about(slanted_axis(rng), size(rng, decade)) for decade in SMALL]
+    axes = (rng.permutation([0.36, 0.48, 0.8]) * rng.choice([-1.0, 1.0], size=3) for _ in SMALL)
+    return [rotation_about(axis, size(rng, decade)) for axis, decade in zip(axes, SMALL)]
 
 
 def small_transforms(rng):
@@ -118,17 +137,30 @@ def transform(R, p):
     return result
 
 
-def brought_near(T, rng):
-    """Coordinates in B of a point that lies near A's origin, however far away B is.
+def at_right_angles(*turned):
+    """A point 1 m away that a turn (3x3 or 4x4) moves most, at right angles to its axis; to those of both, for two turns."""
+    axes = [Rotation.from_matrix(each[:3, :3]).as_rotvec() for each in turned]
+    return np.linalg.svd([axis / np.linalg.norm(axis) for axis in axes])[2][-1]
+
+
+def seen_from_afar(rng, decades=SMALL):
+    """(a_T_b, p_in_b): B is tilted and far from A, the point p near A's origin; its distance is in each of the decades.
 
     Of large numbers that cancel, single precision keeps too few digits.
     """
-    return T[:3, :3].T @ (vector(rng) - T[:3, 3])
+    frames = [transform(tilt(rng), vector(rng, size(rng, FAR[index % len(FAR)]))) for index in range(len(decades))]
+    points = [vector(rng, size(rng, decade)) for decade in decades]
+    return [(T, T[:3, :3].T @ (p - T[:3, 3])) for T, p in zip(frames, points)]
 
 
 def whole(T):
     """The same matrix, as an array of integers: who builds the answer in an array of this type cuts off its fractions."""
     return T.astype(int)
+
+
+def no_turn(p):
+    """Poses at p that are not turned: of the two quaternions for it, the second has w = -1."""
+    return [pose_of(p, (0, 0, 0, w)) for w in (1, -1)]
 
 
 def whole_pose():

@@ -9,14 +9,15 @@ from transform_lab.judging.diagnosis import together
 
 from .cases import (
     almost_half_turns,
-    brought_near,
+    at_right_angles,
     either_sign,
-    far,
     generic_pose,
     generic_transform,
     half_turn,
+    half_turns_about_almost_an_axis,
     matrix,
     near,
+    no_turn,
     orientation,
     pose,
     pose_of,
@@ -24,6 +25,7 @@ from .cases import (
     quaternion,
     roll_pitch_yaw,
     rotation,
+    seen_from_afar,
     signed_permutations,
     small_transforms,
     small_turns,
@@ -46,6 +48,7 @@ from .conversions import (
     rotation_vector,
 )
 from .equivalent import MAKING_A_POSE, READING_A_POSE
+from .features import number_of, of_each, of_pose, of_product, of_transform
 from .homogeneous_transforms import (
     BOTTOM_ROW,
     ENTRY_BY_ENTRY,
@@ -78,12 +81,12 @@ def chain_cases(rng):
         "three transforms": [(first, second, third), (second, third, first), (third, third, third)],
         "four to six transforms": [some(4), (first, second, still, third, second), some(6), (first,) * 4],
         "frames hardly turned and hardly moved": [
-            *((*some(1), T) for T in small[::2]), *((T, *some(1)) for T in small[1::2]), tuple(small),
+            *((T, transform(rotation(rng), at_right_angles(T))) for T in small), (*some(1), small[0]), tuple(small),
         ],
         "frames far away and close by": [
             (transform(tilt(rng), vector(rng, 50.0)), transform(half_turn(rng), vector(rng, 0.01))),
             (transform(wide_turn(rng), vector(rng, 0.01)), transform(tilt(rng), vector(rng, 50.0)), *some(1)),
-            *((T, transform(tilt(rng), brought_near(T, rng))) for T in (transform(tilt(rng), p) for p in far(rng))),
+            *((T, transform(tilt(rng), p)) for T, p in seen_from_afar(rng)),
         ],
         "one transform in whole numbers": [(whole_numbers, second), (first, whole_numbers, third)],
     }  # fmt: skip
@@ -168,6 +171,7 @@ CHAIN = Exercise(
     answer="first_T_last",
     reference=chain,
     cases=chain_cases,
+    features=(*number_of("transforms", 6), *of_each("transforms", of_transform("transforms"))),
     credit={"rotation": 0.4, "translation": 0.4},
     weights={"three transforms": 2},
     misconceptions=(
@@ -316,7 +320,6 @@ def transform_pose_cases(rng):
     along_axes = signed_permutations()
     shuffled = [along_axes[index] for index in rng.permutation(24)]
     T, p = generic_transform(rng), generic_pose(rng)
-    far_away = [transform(tilt(rng), p) for p in far(rng)]
     families = {
         "frames turned by quarter turns": [
             (transform(R, vector(rng)), pose(R.T @ S, vector(rng))) for R, S in zip(shuffled, along_axes)
@@ -336,17 +339,24 @@ def transform_pose_cases(rng):
             (transform(R, vector(rng)), pose(S, vector(rng)))
             for R, S in ((wide_turn(rng), wide_turn(rng)), (half_turn(rng), tilt(rng)), (tilt(rng), half_turn(rng)))
         ],
-        "almost a half turn in all": [
-            (transform(R, vector(rng)), pose(R.T @ almost, vector(rng)))
-            for R, almost in ((rotation(rng), almost) for almost in almost_half_turns(rng))
+        "turned by more than 120 degrees in all": [
+            (transform(R, vector(rng)), pose(R.T @ turn(rng, axis), vector(rng)))
+            for R, turn, axis in ((rotation(rng), turn, axis) for turn in (wide_turn, half_turn) for axis in range(3))
+        ],
+        "almost a half turn in all, or one almost about an axis of A": [
+            *(
+                (transform(R, vector(rng)), pose(R.T @ almost, vector(rng)))
+                for R, almost in ((rotation(rng), almost) for almost in almost_half_turns(rng))
+            ),
+            *((transform(np.eye(3), vector(rng)), pose(R, vector(rng))) for R in half_turns_about_almost_an_axis()),
         ],
         "frames hardly turned and hardly moved": [
-            *((T, pose(R, vector(rng))) for T, R in zip(small_transforms(rng), small_turns(rng))),
+            *((T, pose(R, at_right_angles(T))) for T, R in zip(small_transforms(rng), small_turns(rng))),
             *((transform(rotation(rng), vector(rng)), pose(R, p)) for R, p in zip(small_turns(rng), near(rng))),
         ],
         "frames far away and close by": [
             (transform(tilt(rng), vector(rng, 50.0)), pose(wide_turn(rng), vector(rng, 0.01))),
-            *((T, pose(tilt(rng), brought_near(T, rng))) for T in far_away),
+            *((T, pose(tilt(rng), p)) for T, p in seen_from_afar(rng, (0, -1, 0))),
         ],
     }
     cases = [
@@ -358,7 +368,10 @@ def transform_pose_cases(rng):
     return [
         *cases,
         Case("frame or pose in whole numbers", (whole_numbers, generic_pose(rng))),
-        Case("frame or pose in whole numbers", (generic_transform(rng), whole_pose())),
+        *(
+            Case("frame or pose in whole numbers", (generic_transform(rng), frame))
+            for frame in (whole_pose(), *no_turn(vector(rng)))
+        ),
     ]
 
 
@@ -448,6 +461,7 @@ TRANSFORM_POSE = Exercise(
     answer="pose_in_a",
     reference=transform_pose,
     cases=transform_pose_cases,
+    features=(*of_transform("a_T_b"), *of_pose("pose_in_b"), *of_product("a_T_b", "pose_in_b")),
     credit={"position": 0.5, "orientation": 0.5},
     weights={"tilted frames": 2},
     equivalent=READING_A_POSE | MAKING_A_POSE,

@@ -11,6 +11,8 @@ MINUS_TRUE = "-True is as true as True"
 TWO_QUATERNIONS = "q and -q are the same orientation"
 SAME_SIZE = "one way or the other, a difference has the same size"
 NEAR_TOLERANCE = "the tolerance is about 1e-6 all the same; nobody is asked about what lies so near to it"
+WHOLE_STAY_WHOLE = "whole numbers make whole numbers here: they are quarter or half turns"
+IN_SINGLE_PRECISION = {"single precision keeps what the tolerance asks for": ("all in single precision",)}
 UPPER_LEFT = "only the matrix's upper left is used"
 
 # of helpers in cases.py

@@ -8,12 +8,15 @@ from transform_lab.judging.diagnosis import together
 
 from .cases import (
     almost_half_turns,
-    brought_near,
+    at_right_angles,
     either_sign,
     far,
     half_turn,
+    half_turn_to_rounding,
+    half_turns_about_almost_an_axis,
     matrix,
     near,
+    no_turn,
     orientation,
     pose,
     pose_of,
@@ -22,6 +25,7 @@ from .cases import (
     roll_pitch_yaw,
     rotation,
     rotation_about,
+    seen_from_afar,
     signed_permutations,
     small_transforms,
     small_turns,
@@ -54,7 +58,8 @@ from .conversions import (
     trace_formula_guarded,
     trace_formula_in_plain_python,
 )
-from .equivalent import LISTS, MAKING_A_POSE, READING_A_POSE
+from .equivalent import IN_SINGLE_PRECISION, LISTS, MAKING_A_POSE, READING_A_POSE, WHOLE_STAY_WHOLE
+from .features import of_orientation, of_pose, of_rotation, of_transform, of_vector, together_small
 from .rotation import TRUNCATED
 from .specification import Case, Exercise, Misconception
 
@@ -68,8 +73,12 @@ def many_frames(rng):
         "a frame turned by quarter turns": [(R, vector(rng)) for R in signed_permutations()],
         "a tilted frame": [(R, p), (tilt(rng), p), (R, vector(rng)), (rotation(rng), np.zeros(3))],
         "a frame turned by more than 120 degrees": [(wide_turn(rng, axis), vector(rng)) for axis in range(3)],
-        "a half turn about a slanted axis": [(half_turn(rng, axis), vector(rng)) for axis in range(3)],
-        "almost a half turn": [(R, vector(rng)) for R in almost_half_turns(rng)],
+        "a half turn about a slanted axis": [
+            *((half_turn(rng, axis), vector(rng)) for axis in range(3)), (half_turn_to_rounding(rng), vector(rng)),
+        ],
+        "almost a half turn, or one almost about an axis of A": [
+            (R, vector(rng)) for R in (*almost_half_turns(rng), *half_turns_about_almost_an_axis())
+        ],
         "Example 1, and frames hardly turned and hardly moved": [
             (EXAMPLE_1[:3, :3], EXAMPLE_1[:3, 3]), *zip(small_turns(rng), near(rng)),
         ],
@@ -169,6 +178,8 @@ MAKE_TRANSFORM = Exercise(
     answer="a_T_b",
     reference=make_transform,
     cases=make_transform_cases,
+    features=(*of_rotation("R"), *of_vector("p"), together_small("R", "p")),
+    equivalent=IN_SINGLE_PRECISION,
     credit={"rotation": 0.4, "translation": 0.4},
     weights={"a tilted frame": 2},
     misconceptions=(
@@ -424,9 +435,10 @@ TRANSFORM_TO_POSE = Exercise(
     answer="a_T_b",
     reference=transform_to_pose,
     cases=transform_to_pose_cases,
+    features=(*of_transform("matrix"), *of_orientation("matrix")),
     credit={"position": 0.5, "orientation": 0.5},
     weights={"a tilted frame": 2},
-    equivalent=MAKING_A_POSE,
+    equivalent=MAKING_A_POSE | IN_SINGLE_PRECISION,
     misconceptions=(
         *(
             Misconception(
@@ -571,7 +583,8 @@ def pose_to_transform_cases(rng):
         for family, frames in many_frames(rng).items()
         for frame in either_sign([pose(R, p) for R, p in frames])
     ]
-    return [Case("a frame turned by quarter turns", (whole_pose(),)), *cases]
+    simple = whole_pose(), *no_turn(vector(rng))
+    return [*(Case("a frame turned by quarter turns", (frame,)) for frame in simple), *cases]
 
 
 def _from_pose_with(rotation):
@@ -604,9 +617,10 @@ POSE_TO_TRANSFORM = Exercise(
     answer="a_T_b",
     reference=pose_to_transform,
     cases=pose_to_transform_cases,
+    features=(*of_pose("pose"), *of_orientation("pose")),
     credit={"rotation": 0.4, "translation": 0.4},
     weights={"a tilted frame": 2},
-    equivalent=READING_A_POSE,
+    equivalent=READING_A_POSE | IN_SINGLE_PRECISION | {WHOLE_STAY_WHOLE: ("the answer in the type of pose",)},
     misconceptions=(
         *(
             Misconception(
@@ -745,12 +759,12 @@ def transform_point_cases(rng):
             (transform(rotation(rng), vector(rng)), y_axis),
             (transform(tilt(rng), vector(rng)), z_axis),
         ],
-        "a frame hardly turned and hardly moved": [(T, vector(rng)) for T in small_transforms(rng)],
+        "a frame hardly turned and hardly moved": [(T, at_right_angles(T)) for T in small_transforms(rng)],
         "a point near B's origin, or in it": [
             (transform(tilt(rng), vector(rng)), np.zeros(3)), *((transform(rotation(rng), vector(rng)), p) for p in near(rng)),
         ],
         "a frame far away, a point far away, or both": [
-            *((T, brought_near(T, rng)) for T in (transform(tilt(rng), p) for p in far(rng))),
+            *seen_from_afar(rng), *((transform(tilt(rng), p), vector(rng)) for p in far(rng)),
             *((transform(wide_turn(rng), vector(rng)), p) for p in far(rng)),
         ],
         "frame or point in whole numbers": [
@@ -810,6 +824,7 @@ TRANSFORM_POINT = Exercise(
     answer="p_in_a",
     reference=transform_point,
     cases=transform_point_cases,
+    features=(*of_transform("a_T_b"), *of_vector("p_in_b")),
     weights={"a tilted frame": 2},
     misconceptions=(
         Misconception(

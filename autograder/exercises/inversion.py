@@ -6,7 +6,7 @@ from transform_lab.judging.diagnosis import together
 
 from .cases import (
     FAR,
-    brought_near,
+    at_right_angles,
     far,
     from_roll_pitch_yaw,
     generic_transform,
@@ -15,6 +15,7 @@ from .cases import (
     off_diagonal,
     roll_pitch_yaw,
     rotation,
+    seen_from_afar,
     signed_permutations,
     size,
     small_transforms,
@@ -27,6 +28,8 @@ from .cases import (
     with_bottom_row,
 )
 from .conversions import BY_TRACE, near_half_turns, rotation_vector
+from .equivalent import WHOLE_STAY_WHOLE
+from .features import of_transform, of_two_frames, of_vector
 from .homogeneous_transforms import BOTTOM_ROW, ENTRY_BY_ENTRY, ONE_IN_FRONT, YAW_ALONE, at_lock, open_where
 from .rotation import TRUNCATED
 from .specification import Case, Exercise, Misconception
@@ -112,7 +115,7 @@ def invert_transform_cases(rng):
             transform(half_turn(rng), vector(rng)), transform(rotation(rng), np.zeros(3)),
         ],
         "a frame turned by more than 120 degrees": [transform(wide_turn(rng), vector(rng)) for _ in range(2)],
-        "a frame hardly turned": [transform(R, vector(rng)) for R in small_turns(rng)],
+        "a frame hardly turned": [transform(R, at_right_angles(R)) for R in small_turns(rng)],
         "a frame hardly turned and hardly moved": small_transforms(rng),
         "a frame far away": [
             *(transform(tilt(rng), p) for p in far(rng)),
@@ -151,6 +154,8 @@ INVERT_TRANSFORM = Exercise(
     answer="b_T_a",
     reference=invert_transform,
     cases=invert_transform_cases,
+    features=of_transform("a_T_b"),
+    equivalent={WHOLE_STAY_WHOLE: ("the answer in the type of a_T_b",)},
     credit={"rotation": 0.3, "translation": 0.5},
     weights={"a tilted frame": 2},
     misconceptions=(
@@ -243,13 +248,14 @@ def relative_transform_cases(rng):
         "two frames that are close to each other, or the same": [
             (C, C), *((C, C @ T) for T in small_transforms(rng)),
         ],
-        "two frames that are close to each other, and far away": [
+        "two frames far away, or far from each other": [
             *((transform(R, far_away), transform(R @ tilt(rng), far_away + vector(rng))) for far_away in far(rng)),
+            *((C, transform(rotation(rng), p)) for p in far(rng)),
             *((transform(R, far_away), transform(R, far_away + p)) for far_away, p in zip((*far(rng), *far(rng)), near(rng))),
         ],
         "a frame hardly turned and hardly moved, or not at all": [
             (np.eye(4), B), (C, np.eye(4)), *zip(small_transforms(rng), small_transforms(rng)),
-            *((T, transform(rotation(rng), vector(rng))) for T in small_transforms(rng)),
+            *((T, transform(rotation(rng), at_right_angles(T))) for T in small_transforms(rng)),
         ],
         "one frame in whole numbers": [(whole_numbers, C), (B, whole_numbers)],
     }  # fmt: skip
@@ -317,6 +323,7 @@ RELATIVE_TRANSFORM = Exercise(
     answer="b_T_c",
     reference=relative_transform,
     cases=relative_transform_cases,
+    features=(*of_transform("a_T_b"), *of_transform("a_T_c"), *of_two_frames("a_T_b", "a_T_c")),
     credit={"rotation": 0.4, "translation": 0.4},
     weights={"two tilted frames": 2},
     misconceptions=(
@@ -478,16 +485,17 @@ def object_in_gripper_cases(rng):
         "a tilted camera and a tilted gripper": [
             (C, G, p), (C, G, vector(rng)), (C, generic_transform(rng), p),
             (transform(half_turn(rng), vector(rng)), G, p), (G, C, np.zeros(3)), (G, G, p),
+            (np.eye(4), G, p), (C, np.eye(4), p),
         ],
         "camera and gripper hardly turned and hardly moved": [
-            (camera, gripper, vector(rng)) for camera, gripper in zip(small_transforms(rng), small_transforms(rng))
+            (camera, gripper, at_right_angles(camera, gripper))
+            for camera, gripper in zip(small_transforms(rng), small_transforms(rng))
         ],
-        "camera and gripper close to each other, and the object close to the camera": [
-            (G, G @ T, p) for T, p in zip(small_transforms(rng), near(rng))
-        ],
+        "camera and gripper close to each other": [(G, G @ T, at_right_angles(T)) for T in small_transforms(rng)],
+        "the object close to the camera": [(C, generic_transform(rng), p) for p in near(rng)],
         "camera, gripper and object far away": [
             (transform(tilt(rng), vector(rng, 20.0)), transform(tilt(rng), vector(rng, 30.0)), vector(rng, 50.0)),
-            *((T, transform(tilt(rng), vector(rng)), brought_near(T, rng)) for T in (transform(R, p) for p in far(rng))),
+            *((T, transform(tilt(rng), np.zeros(3)), p) for T, p in seen_from_afar(rng)),
             *((transform(R, p), transform(wide_turn(rng), p + vector(rng)), vector(rng)) for p in far(rng)),
         ],
         "the camera, the gripper or the object in whole numbers": [
@@ -555,6 +563,12 @@ OBJECT_IN_GRIPPER = Exercise(
     answer="p_in_gripper",
     reference=object_in_gripper,
     cases=object_in_gripper_cases,
+    features=(
+        *of_transform("base_T_camera"),
+        *of_transform("base_T_gripper"),
+        *of_two_frames("base_T_camera", "base_T_gripper"),
+        *of_vector("p_in_camera"),
+    ),
     weights={"a tilted camera and a tilted gripper": 2},
     misconceptions=(
         Misconception("inverse-missing", lambda camera, gripper, p: _apply(gripper @ camera, p), *BOTH_AS_THEY_ARE),

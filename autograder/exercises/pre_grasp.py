@@ -12,13 +12,15 @@ from .cases import (
     FAR,
     SMALL,
     almost_half_turns,
-    brought_near,
     either_sign,
     far,
     from_roll_pitch_yaw,
     half_turn,
+    half_turn_to_rounding,
+    half_turns_about_almost_an_axis,
     matrix,
     near,
+    no_turn,
     orientation,
     pose,
     pose_of,
@@ -27,11 +29,11 @@ from .cases import (
     roll_pitch_yaw,
     rotation,
     rotation_about,
+    seen_from_afar,
     signed_permutations,
     size,
     small_turns,
     tilt,
-    transform,
     vector,
     whole_pose,
     wide_turn,
@@ -50,6 +52,7 @@ from .conversions import (
     slips,
 )
 from .equivalent import MAKING_A_POSE, READING_A_POSE, UPPER_LEFT
+from .features import LENGTHS, of_number, of_orientation, of_pose, of_vector
 from .homogeneous_transforms import ENTRY_BY_ENTRY, NO_ORIENTATION, QUATERNION_ORDER, at_lock, open_where
 from .specification import Case, Exercise, Misconception
 
@@ -75,7 +78,9 @@ def _along_axes(rng):
     along_axes = rng.permutation(signed_permutations())
     upright = sorted(filter(x_axis_upright, along_axes), key=lambda R: -np.trace(R))  # first a quarter turn about y
     others = [R for R in along_axes if not x_axis_upright(R)]
-    return either_sign([pose(R, vector(rng)) for R in (*upright[:4], *others[:8])])
+    return [
+        whole_pose(), *no_turn(vector(rng)), *either_sign([pose(R, vector(rng)) for R in (*upright[:4], *others[:8])]),
+    ]  # fmt: skip
 
 
 def _tilted(rng):
@@ -85,7 +90,8 @@ def _tilted(rng):
 
 
 def _almost_half_turned(rng):
-    return either_sign([pose(R, vector(rng)) for R in almost_half_turns(rng)])
+    turns = *almost_half_turns(rng), half_turn_to_rounding(rng), *half_turns_about_almost_an_axis()
+    return either_sign([pose(R, vector(rng)) for R in turns])
 
 
 def _hardly_turned(rng):
@@ -101,7 +107,7 @@ def pre_grasp_cases(rng):
     tilted, others = _tilted(rng), _tilted(rng)
     odd = rng.uniform(0.111, 0.119)  # no whole number of centimetres
     return [
-        *(Case("an object turned by quarter turns", (object_pose,)) for object_pose in (whole_pose(), *_along_axes(rng))),
+        *(Case("an object turned by quarter turns", (object_pose,)) for object_pose in _along_axes(rng)),
         *(Case("an upright object, the notebook's among them", (object_pose,)) for object_pose in _upright(rng)),
         *(Case("a tilted object", args) for args in zip(tilted, (0.25, 0.1, 0.05, odd, 0.2))),
         *(Case("another distance", args) for args in zip(tilted, (0.02, 1, odd, 0.1))),
@@ -111,7 +117,7 @@ def pre_grasp_cases(rng):
             Case("a distance given by its name", (object_pose,), {"distance": distance})
             for object_pose, distance in zip((*others[2:], tilted[0]), (0.25, 0.02, 0.15, odd))
         ),
-        *(Case("an object that is almost turned by a half turn", (p, 0.3)) for p in _almost_half_turned(rng)),
+        *(Case("an object that is almost turned by a half turn", (p, 3.0)) for p in _almost_half_turned(rng)),
         *(Case("an object hardly turned, almost at the base", (p, d)) for p, d in zip(_hardly_turned(rng), (0.2, *[3.0] * 6))),
         *(Case("an object far away", args) for args in zip(_far(rng), (0.3, 0.02, 20.0))),
         *(
@@ -125,7 +131,7 @@ def waypoint_cases(rng):
     steps = np.array([[-0.1, 0.0, 0.0], [0.0, 0.05, 0.0], [0.1, 0.0, 0.2], [0.0, -0.2, 0.1]])
     tilted, offset = _tilted(rng), vector(rng, 0.3)
     return [
-        *(Case("an object turned by quarter turns", (frame, vector(rng, 0.5))) for frame in (whole_pose(), *_along_axes(rng))),
+        *(Case("an object turned by quarter turns", (frame, vector(rng, 0.5))) for frame in _along_axes(rng)),
         *(Case("an upright object, the notebook's among them", args) for args in zip(_upright(rng), steps)),
         *(Case("a tilted object", (object_pose, offset)) for object_pose in tilted),
         *(Case("a step along one axis of a tilted object, or none", args) for args in zip(tilted, 0.1 * np.eye(4, 3))),
@@ -135,8 +141,8 @@ def waypoint_cases(rng):
         *(Case("an object hardly turned, almost at the base", (p, vector(rng, 3.0))) for p in _hardly_turned(rng)),
         *(Case("an object far away, and long steps", args) for args in zip(_far(rng), (vector(rng, 0.01), *far(rng)[:2]))),
         *(
-            Case("an object far away, and long steps", (pose(T[:3, :3], T[:3, 3]), brought_near(T, rng)))
-            for T in (transform(wide_turn(rng), p) for p in far(rng))
+            Case("an object far away, and long steps", (pose(T[:3, :3], T[:3, 3]), p))
+            for T, p in seen_from_afar(rng, (0, -1, 0))
         ),
     ]  # fmt: skip
 
@@ -383,6 +389,7 @@ PRE_GRASP = Exercise(
     answer="base_T_pre_grasp",
     reference=pre_grasp,
     cases=pre_grasp_cases,
+    features=(*of_pose("object_pose"), *of_orientation("object_pose"), *of_number("distance", LENGTHS)),
     credit={"position": 0.5},
     weights={"a tilted object": 2},
     equivalent=READING_A_POSE | MAKING_A_POSE | {UPPER_LEFT: ("transform: 4 -> 5",)},
@@ -457,6 +464,7 @@ WAYPOINT = Exercise(
     answer="base_T_waypoint",
     reference=waypoint,
     cases=waypoint_cases,
+    features=(*of_pose("object_pose"), *of_orientation("object_pose"), *of_vector("offset")),
     credit={"position": 0.5},
     weights={"a tilted object": 2},
     equivalent=READING_A_POSE | MAKING_A_POSE | {UPPER_LEFT: ("transform: 4 -> 5",)},

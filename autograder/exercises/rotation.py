@@ -1,6 +1,7 @@
 """The exercises of notebook 1: rotation matrices, and the two quaternions of one orientation."""
 
 import math
+from itertools import product
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -21,7 +22,8 @@ from .cases import (
     transform,
     whole,
 )
-from .equivalent import LISTS, MINUS_TRUE, NEAR_TOLERANCE, NUMPYS_NUMBERS, NUMPYS_TRUTH, SAME_SIZE
+from .equivalent import IN_SINGLE_PRECISION, LISTS, MINUS_TRUE, NEAR_TOLERANCE, NUMPYS_NUMBERS, NUMPYS_TRUTH, SAME_SIZE
+from .features import SIGNS, Feature, decades, of_axes, of_differences, of_number, type_of_numbers
 from .specification import Case, Exercise, Misconception
 
 # --- rotation_about_z -----------------------------------------------------------------------------------------------
@@ -32,16 +34,15 @@ def rotation_about_z(degrees):
 
 
 def about_z_cases(rng):
+    small = [math.degrees(size(rng, decade)) for decade in range(-6, -2)]  # which is what the sine is in radians
     families = {
         "a quarter, half or three-quarter turn": [90, 180, 270.0, -90, 0],
-        "a positive angle below 90 degrees": [30, 45.0, 60, rng.uniform(5, 85)],
+        "a positive angle below 90 degrees": [30, 45.0, 60, rng.uniform(2, 9), rng.uniform(10, 85)],
         "a negative angle": [-30, -45.0, -rng.uniform(50, 85), -rng.uniform(95, 175)],
         "an angle between 90 and 360 degrees": [120, 210.0, rng.uniform(95, 175), rng.uniform(275, 355)],
         "more than a full turn": [405, -750.0, rng.uniform(370, 440), _between_singles(size(rng, 3)), -size(rng, 3)],
-        "a fraction of a degree": [
-            0.5, -0.25, rng.uniform(0.01, 0.1), *(sign * size(rng, decade) for sign in (1, -1) for decade in (-4, -3, -2)),
-        ],
-        "a quarter turn, or a fraction of a degree more": [90, -90.0, *(90 + size(rng, d) for d in (-4, -3, -2, -1))],
+        "a fraction of a degree": [0.5, -0.25, rng.uniform(0.01, 0.1), *(sign * angle for sign in (1, -1) for angle in small)],
+        "a quarter turn, or a fraction of a degree more": [90, -90.0, *(90 + angle for angle in small)],
     }  # fmt: skip
     return [Case(family, (angle,)) for family, angles in families.items() for angle in angles]
 
@@ -133,6 +134,7 @@ ABOUT_Z = Exercise(
     answer="a_R_b",
     reference=rotation_about_z,
     cases=about_z_cases,
+    features=of_number("degrees", {"0": (0.0, 0.0)} | decades(-4, 3)),
     equivalent={
         LISTS: (
             "rotation_about_z: np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) -> [[c, -s, 0], [s, c, 0], [0, 0, 1]]",
@@ -358,6 +360,8 @@ FROM_AXES = Exercise(
     answer="a_R_b",
     reference=rotation_from_axes,
     cases=from_axes_cases,
+    features=of_axes("x_axis", "y_axis"),
+    equivalent=IN_SINGLE_PRECISION,
     misconceptions=(
         Misconception(
             "rotation-transposed",
@@ -475,6 +479,11 @@ SLIGHT = 1.5e-7  # a relative change that every way to compare with 1e-6 lets pa
 TOO_FAR = 4e-6  # one that none lets pass, and every one with 1e-5
 
 
+def products_off(R):
+    """By how much the products of R's columns (with themselves, with each other) are off; and whether R is right-handed."""
+    return [(R.T @ R - np.eye(3))[np.triu_indices(3)]], np.linalg.det(R) > 0
+
+
 def is_rotation_cases(rng):
     """Each family sets rotations against matrices that look like them, so that no one answer is right in a family.
 
@@ -524,12 +533,12 @@ def is_rotation_cases(rng):
             half_turn(rng) + rng.uniform(-1e-9, 1e-9, size=(3, 3)), *changed,
         ],
         "an axis whose length is off by less than 1e-6, or by more": [
-            *(some() @ _stretched(axis, sign * SLIGHT) for axis, sign in ((0, 1), (1, -1), (2, 1))),
+            *(some() @ _stretched(axis, sign * SLIGHT) for axis in range(3) for sign in (1, -1)),
             *(some() @ _stretched(axis, sign * TOO_FAR) for axis in range(3) for sign in (1, -1)),
             *(some() @ _stretched(axis, size) for axis, size in zip((0, 1, 2), decades[1:])),
         ],
         "two axes at right angles to less than 1e-6, or off by more": [
-            *(some() @ _leaning(axis, sign * 2 * SLIGHT) for axis, sign in ((0, 1), (1, -1), (2, 1))),
+            *(some() @ _leaning(axis, sign * 2 * SLIGHT) for axis in range(3) for sign in (1, -1)),
             *(some() @ _leaning(axis, sign * 2 * TOO_FAR) for axis in range(3) for sign in (1, -1)),
             *(some() @ _leaning(axis, -size) for axis, size in zip((1, 2, 0), decades[1:])),
         ],
@@ -655,7 +664,14 @@ IS_ROTATION = Exercise(
     answer="",
     reference=is_rotation,
     cases=is_rotation_cases,
+    features=(
+        *of_differences(("R",), ("x.x", "x.y", "x.z", "y.y", "y.z", "z.z"), lambda R: products_off(R)[0][0]),
+        Feature(("R",), "sign of the determinant", np.linalg.det, SIGNS),
+        type_of_numbers("R"),
+    ),
+    differences=products_off,
     equivalent=CLOSE
+    | IN_SINGLE_PRECISION
     | {
         NUMPYS_TRUTH: (
             *CLOSE[NUMPYS_TRUTH],
@@ -678,10 +694,7 @@ IS_ROTATION = Exercise(
         ),
         NEAR_TOLERANCE: (
             *CLOSE[NEAR_TOLERANCE],
-            "is_rotation: np.allclose(R.T @ R, np.eye(3), rtol=0, atol=1e-06) -> np.allclose(R.T @ R, np.eye(3), atol=1e-06)",
-            "is_rotation: np.allclose(R.T @ R, np.eye(3), rtol=0, atol=1e-06) -> np.allclose(R.T @ R, np.eye(3), rtol=0)",
             "is_rotation: np.isclose(np.linalg.det(R), 1, rtol=0, atol=1e-06) -> np.isclose(np.linalg.det(R), 1, atol=1e-06)",
-            "is_rotation: np.isclose(np.linalg.det(R), 1, rtol=0, atol=1e-06) -> np.isclose(np.linalg.det(R), 1, rtol=0)",
         ),
     },
     misconceptions=(
@@ -840,6 +853,11 @@ def _others_rolled(q, kept):
     return np.insert(np.roll(np.delete(q, kept), 1), kept, q[kept])
 
 
+def numbers_off(q1, q2):
+    """By how much the numbers of q1 are off from those of q2, and from those of -q2; there is nothing else."""
+    return [q1 - q2, q1 + q2], True
+
+
 ALIKE = 4e-7  # how far q1 and q2 may be from each other: half the angle between them, too, is less than 1e-6
 
 
@@ -849,14 +867,13 @@ def _shifted(q, by):
     return moved / np.linalg.norm(moved)
 
 
-def _around_zero(q, number):
-    """Pairs that are the same: where q has a 0, one of them has 2e-7 and the other -2e-7."""
-    if q[number]:
-        return
-    for sign in (1, -1):
-        one, other = q.copy(), q.copy()
-        one[number], other[number] = ALIKE / 2, -ALIKE / 2
-        yield one, sign * other
+def _around_zeros(q):
+    """Pairs that differ in one number alone, which is 0 in q: 2e-7 in the one and -2e-7 in the other, or by too much."""
+    sizes = ALIKE, -ALIKE, TOO_FAR, -TOO_FAR
+    off = [*((by, sign) for by in sizes for sign in (1, -1)), (10 * TOO_FAR, 1), (100 * TOO_FAR, -1)]
+    for number, (by, sign) in product(np.flatnonzero(q == 0), off):
+        one, other = (q + half * np.eye(4)[number] for half in (by / 2, -by / 2))
+        yield one / np.linalg.norm(one), sign * other / np.linalg.norm(other)
 
 
 def _unequal(q, number, by):
@@ -890,7 +907,7 @@ def same_rotation_cases(rng):
     all_positive = [np.roll(positive, shift) / np.linalg.norm(positive) for shift in range(3)]
     positive_unit = all_positive[0]
     whole_q = np.array([0, 0, 0, 1])
-    even = np.array([0.5, 0.5, -0.5, 0.5]) * rng.choice([-1.0, 1.0], size=4)  # four numbers of one size
+    even = np.array([0.5, -0.5, 0.5, -0.5]) * rng.choice([-1.0, 1.0])  # four numbers of one size
     with_zeros = np.array([0.0, 0.6, -0.8, 0.0]), np.array([0.6, 0.0, 0.0, -0.8])
     families = {
         "a quaternion and its negative": [(q[0], -q[0]), (-q[1], q[1]), (q[2], -q[2]), (whole_q, -whole_q)],
@@ -918,14 +935,14 @@ def same_rotation_cases(rng):
             *((q[n], sign * nearby(q[n], ALIKE)) for n, sign in ((3, 1), (4, -1))),
             *((q[n], sign * nearby(q[n], TOO_FAR * 10.0**d)) for d in range(3) for n, sign in ((5 + d, 1), (8 - d, -1))),
             *((even, sign * _shifted(even, TOO_FAR)) for sign in (1, -1)),
+            *(
+                (_unequal(even, number, 1e-7), sign * _unequal(even, number, -1e-7))
+                for number, sign in ((0, 1), (1, -1), (2, 1))
+            ),
         ],
-        "two nearly the same, where a number is 0 but for rounding": [
-            *(pair for some in with_zeros for number in range(4) for pair in _around_zero(some, number)),
-            *_around_zero(np.array([0.0, 0.0, 0.0, 1.0]), 0),
-        ],
-        "two nearly the same, where two numbers are equal but for rounding": [
-            (_unequal(even, number, 1e-7), sign * _unequal(even, number, -1e-7))
-            for number, sign in ((0, 1), (1, -1), (2, 1))
+        "two nearly the same, where a number is 0 but for rounding, or off by more": [
+            *(pair for some in with_zeros for pair in _around_zeros(some)),
+            (turn(axis, ALIKE / 2), turn(-axis, ALIKE / 2)), (turn(axis, ALIKE / 2), -turn(other, ALIKE / 2)),
         ],
     }  # fmt: skip
     return [Case(family, pair) for family, pairs in families.items() for pair in pairs]
@@ -989,7 +1006,13 @@ SAME_ROTATION = Exercise(
     answer="",
     reference=same_rotation,
     cases=same_rotation_cases,
+    features=(
+        *of_differences(("q1", "q2"), "xyzw", lambda q1, q2: min(numbers_off(q1, q2)[0], key=np.linalg.norm)),
+        *(type_of_numbers(name) for name in ("q1", "q2")),
+    ),
+    differences=numbers_off,
     equivalent=CLOSE
+    | IN_SINGLE_PRECISION
     | {
         NUMPYS_NUMBERS: (*CLOSE[NUMPYS_NUMBERS], "same_rotation: np.asarray(q2) -> q2"),
         NUMPYS_TRUTH: (*CLOSE[NUMPYS_TRUTH], "same_rotation: bool(same or opposite) -> same or opposite"),
@@ -1002,15 +1025,7 @@ SAME_ROTATION = Exercise(
             "same_rotation: np.allclose(q1, -np.asarray(q2), rtol=0, atol=1e-06) -> "
             "np.allclose(-np.asarray(q2), q1, rtol=0, atol=1e-06)",
         ),
-        NEAR_TOLERANCE: (
-            *CLOSE[NEAR_TOLERANCE],
-            "same_rotation: np.allclose(q1, q2, rtol=0, atol=1e-06) -> np.allclose(q1, q2, atol=1e-06)",
-            "same_rotation: np.allclose(q1, q2, rtol=0, atol=1e-06) -> np.allclose(q1, q2, rtol=0)",
-            "same_rotation: np.allclose(q1, -np.asarray(q2), rtol=0, atol=1e-06) -> "
-            "np.allclose(q1, -np.asarray(q2), atol=1e-06)",
-            "same_rotation: np.allclose(q1, -np.asarray(q2), rtol=0, atol=1e-06) -> "
-            "np.allclose(q1, -np.asarray(q2), rtol=0)",
-        ),
+        NEAR_TOLERANCE: (*CLOSE[NEAR_TOLERANCE],),
         "q1 is compared with q2 and with -q2": (
             "_close: np.asarray(one) - np.asarray(other) -> np.asarray(one) + np.asarray(other)",
             "_close: np.asarray(one) - np.asarray(other) -> np.asarray(one) - -np.asarray(other)",

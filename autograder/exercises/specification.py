@@ -19,6 +19,8 @@ from transform_lab.judging.kinds import KINDS
 from transform_lab.judging.plain import PlainCase, PlainExercise
 from transform_lab.judging.reading import Unfit
 
+from .features import Feature
+
 PUBLIC_SEED = 24  # the cases students see; any other seed draws hidden ones
 ORDER = 1  # with the seed, what the order of the cases is drawn from
 DIGITS_OF_ARGUMENTS = 15  # decimals: nearly all there are, without the noise that sines and products leave at zero
@@ -63,7 +65,10 @@ class Exercise:
     misconceptions: see Misconception
     credit: what each part of the answer is worth alone; all parts together are worth 1
     weights: how much a family of cases counts; 1 for one that is not here
-    equivalent: mutants that are right, too, as {reason: (what was changed, …)}; see autograder.exercises.equivalent
+    features: what its arguments can be measured by, see autograder.exercises.features: there is a case in every band
+    differences: of a predicate, from the arguments to what it compares with its tolerance, ([array, …], rest): it is true when
+        one of the arrays is all within the tolerance, and the rest is true
+    equivalent: mutants and shortcuts that are right, too, as {reason: (what was changed, …)}; see autograder.exercises.equivalent
     """
 
     name: str
@@ -74,6 +79,8 @@ class Exercise:
     misconceptions: tuple = ()
     credit: dict = field(default_factory=dict)
     weights: dict = field(default_factory=dict)
+    features: tuple[Feature, ...] = ()
+    differences: Callable | None = None
     equivalent: dict = field(default_factory=dict)
 
     def __post_init__(self):
@@ -95,7 +102,6 @@ def key(exercise: Exercise, seed: int) -> PlainExercise:
     as the specification has them.
     """
     cases = exercise.cases(np.random.default_rng(seed))
-    order = range(len(cases)) if seed == PUBLIC_SEED else np.random.default_rng([seed, ORDER]).permutation(len(cases))
     return {
         "parameters": [str(p).partition("=")[0] for p in signature(exercise.reference).parameters.values()],
         "returns": exercise.returns,
@@ -103,8 +109,17 @@ def key(exercise: Exercise, seed: int) -> PlainExercise:
         "credit": exercise.credit,
         "weights": {case.family: exercise.weights.get(case.family, 1) for case in cases},
         "misconceptions": [{"id": m.id, "says": m.says, "hint": m.hint} for m in exercise.misconceptions],
-        "cases": [_case(exercise, cases[number]) for number in order],
+        "cases": [_case(exercise, cases[number]) for number in order_of(len(cases), seed)],
     }
+
+
+def order_of(number, seed):
+    """The order in which a key has so many cases: their numbers in the specification."""
+    return (
+        list(range(number))
+        if seed == PUBLIC_SEED
+        else np.random.default_rng([seed, ORDER]).permutation(number).tolist()
+    )
 
 
 class Arguments:

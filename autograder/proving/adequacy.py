@@ -12,11 +12,12 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from transform_lab.judging import codec
 from transform_lab.judging.answers import is_right, parts_of
-from transform_lab.judging.calling import reply
+from transform_lab.judging.calling import reply, same_object
+from transform_lab.judging.kinds import KINDS
 from transform_lab.judging.verdict import examine
 
 from ..exercises import PUBLIC_SEED, key
-from ..exercises.specification import Arguments
+from ..exercises.specification import Arguments, order_of
 
 NAMED_EVERY = 10  # seeds: what a misconception is called is asked for on each tenth, for it costs all the cases
 LONGEST = 1.0  # seconds of processor time for the cases of one seed: a mutant's loop may have no end
@@ -33,7 +34,9 @@ class Found:
     """What became of one function."""
 
     accepted: list = field(default_factory=list)  # seeds on all of whose cases it is right
-    refused: dict = field(default_factory=dict)  # {seed: the number of a case in which it is not}
+    refused: dict = field(
+        default_factory=dict
+    )  # {seed: the number, in the specification, of a case in which it is not}
     called: Counter = field(default_factory=Counter)  # {misconceptions that it was called: number of seeds}
 
     def __iadd__(self, other):
@@ -58,7 +61,12 @@ class Cases:
             answer = function(*args, **kwargs)
         except Exception:
             return False
-        return is_right(self.returns, _as_sent(answer), self.right[number]) and self.arguments[number].are(args, kwargs)
+        same = same_object(answer, codec.encode(answer), [*args, *kwargs.values()])
+        return (
+            is_right(self.returns, _as_sent(answer), self.right[number])
+            and KINDS[self.returns].own(same)
+            and self.arguments[number].are(args, kwargs)
+        )
 
     def refusing(self, function, likely=0):
         """The number of a case in which a function is not right, or None; the case `likely` is tried first."""
@@ -70,14 +78,16 @@ class Cases:
 def measure(exercise, tried, seeds, named=()):
     """A Found for each of the functions that are tried, on the cases of `seeds`; names are asked for on those of `named`."""
     found = [Found() for _ in tried]
-    likely = [0] * len(tried)  # the case that refused it last: most often the one that does again
+    likely = [0] * len(
+        tried
+    )  # the case (by its number in the specification) that refused it last: mostly it does again
     endless = set()  # what did not come to its end on one seed is not called again
     with quiet():
         for seed in seeds:
             drawn = key(exercise if seed in named else replace(exercise, misconceptions=()), seed)
-            cases = Cases(drawn)
+            cases, order = Cases(drawn), order_of(len(drawn["cases"]), seed)
             for index, each in enumerate(tried):
-                number = likely[index]
+                number = order.index(likely[index])
                 if index not in endless:
                     try:
                         with bounded(LONGEST_RIGHT if each.right else LONGEST):
@@ -87,7 +97,7 @@ def measure(exercise, tried, seeds, named=()):
                 if number is None:
                     found[index].accepted.append(seed)
                 else:
-                    found[index].refused[seed] = likely[index] = number
+                    found[index].refused[seed] = likely[index] = order[number]
                 if each.misconception and seed in named:
                     found[index].called[_called(exercise.name, drawn, cases, each.function)] += 1
     return found

@@ -8,6 +8,7 @@ from functools import cache
 from ..course import Course, CourseError
 from ..exercises import EXERCISES
 from .adequacy import NAMED_EVERY, Found, measure, misnamed, refused, slips_through
+from .bands import empty_bands
 from .errors import told
 from .search import Search
 from .solutions import made_no_longer, to_be_tried
@@ -27,6 +28,7 @@ class Proof:
     tried: list
     found: list
     made_no_longer: list
+    empty: dict  # {(feature, band): seeds without a case in it}
     cases: dict = field(default_factory=dict)
 
     def of(self, *kinds):
@@ -53,7 +55,7 @@ class Proof:
     @property
     def open(self):
         """The number of things that an author has to look at."""
-        lists = self.slipping, self.refused, self.misnamed, self.made_no_longer
+        lists = self.slipping, self.refused, self.misnamed, self.made_no_longer, self.empty
         return sum(map(len, lists)) + (not self.solved)
 
 
@@ -85,11 +87,13 @@ def _spans(seeds):
 
 def _proof(course, name, seeds, measured):
     tried = _tried(course.root, name)
-    found = [Found() for _ in tried]
-    for part in measured:
+    found, empty = [Found() for _ in tried], {}
+    for part, without in measured:
         for total, what in zip(found, part):
             total += what
-    proof = Proof(EXERCISES[name], seeds, tried, found, made_no_longer(EXERCISES[name], tried))
+        for band, some in without.items():
+            empty.setdefault(band, []).extend(some)
+    proof = Proof(EXERCISES[name], seeds, tried, found, made_no_longer(EXERCISES[name], tried), empty)
     if proof.slipping:
         search = Search(EXERCISES[name], [each.function for each, what in proof.of("right") if not what.refused])
         proof.cases = {
@@ -100,7 +104,7 @@ def _proof(course, name, seeds, measured):
 
 def _measured(root, name, seeds, named):
     try:
-        return measure(EXERCISES[name], _tried(root, name), seeds, named)
+        return measure(EXERCISES[name], _tried(root, name), seeds, named), empty_bands(EXERCISES[name], seeds)
     except Exception as error:
         raise CourseError(f"{name} cannot be proved: {told(error)}") from None
 

@@ -1,7 +1,9 @@
 """What `prove` prints: a table of the exercises, then of one exercise's misconceptions, and what is open with what to do."""
 
 import os
+import re
 
+import numpy as np
 from rich.table import Column, Table
 from rich.text import Text
 
@@ -9,12 +11,15 @@ from ..exercises import PUBLIC_SEED, key
 from .adequacy import misnamed
 from .search import code_of, quoted
 
+THRESHOLD = re.compile(r"(?<= )[-+.\de]*\d[-+.\de]*(?=,| |$)")
 NO_CASE = "No case found that tells it apart: perhaps it is {}."
 
 
 def summary(proofs, seeds):
     """The Table with a row for each exercise; a number alone stands for all of them."""
-    heads = "exercise", "misconceptions", "named", "mutants", "equivalent", "right", "wrong", "open"
+    heads = "exercise cases bands miscon-\nceptions named mutants short-\ncuts equi-\nvalent solu-\ntions open".split(
+        " "
+    )
     title = f"caught, named or accepted on the cases of all {seeds} seeds"
     table = Table(
         *(Column(head, no_wrap=True) for head in heads),
@@ -27,9 +32,11 @@ def summary(proofs, seeds):
         misconceptions = proof.of("misconception")
         table.add_row(
             proof.exercise.name,
+            str(len(proof.exercise.cases(np.random.default_rng(PUBLIC_SEED)))),
+            _all_or_some([(f.name, band) not in proof.empty for f in proof.exercise.features for band in f.bands]),
             _share(misconceptions),
             _all_or_some([not misnamed(each, what) for each, what in misconceptions]),
-            *(_share(proof.of(kind)) for kind in ("mutant", "equivalent", "right", "wrong")),
+            *(_share(proof.of(*kinds)) for kinds in (["mutant"], ["shortcut"], ["equivalent"], ["right", "wrong"])),
             str(proof.open or ""),
         )
     return table
@@ -56,6 +63,28 @@ def misconceptions(proof):
     return table
 
 
+def features(proof):
+    """The Table of what an exercise's arguments are measured by, with the bands that have a case for every seed."""
+    table = Table(Column("feature", no_wrap=True), "bands with a case in them", "empty", box=None, pad_edge=False)
+    for feature in proof.exercise.features:
+        filled = [band for band in feature.bands if (feature.name, band) not in proof.empty]
+        table.add_row(Text(feature.name), Text(" ".join(filled)), Text(" ".join(set(feature.bands) - set(filled))))
+    return table
+
+
+def shortcuts(proof):
+    """The Table of the shortcuts of an exercise, thresholds of one kind together, with how many of them are caught."""
+    table = Table(Column("shortcut"), "caught", "declared equivalent", box=None, pad_edge=False)
+    kinds = {}
+    for each, what in proof.of("shortcut", "equivalent"):
+        if not each.mutant:
+            kinds.setdefault(THRESHOLD.sub("…", each.label), []).append((each, what))
+    for label, tried in kinds.items():
+        wrong = [(each, what) for each, what in tried if not each.right]
+        table.add_row(Text(label), _share(wrong) if wrong else "", str(len(tried) - len(wrong) or ""))
+    return table
+
+
 def _called(found):
     return ", or ".join("; ".join(called) or "nothing" for called in found.called)
 
@@ -70,6 +99,9 @@ def open_points(proof, root):
         yield from _refused(proof, each, what, root)
     for each, what in proof.misnamed:
         yield _point(f"{name}: the misconception {each.label} is called {_called(what)}, on some seeds at least.")
+    for (feature, band), seeds in proof.empty.items():
+        yield _point(f"{name}: no case lies in the band {band} of {feature}, on {_seeds(seeds, proof)}.")
+        yield _detail("Add one to the cases, or narrow the feature's bands to what the docstring allows.")
     for what in proof.made_no_longer:
         yield _point(f"{name}: declared as equivalent, and made no longer; take it out of the specification:")
         yield _detail(f"changed: {what}")
@@ -86,6 +118,8 @@ def _slipping(proof, root):
         if each.kind == "mutant":
             yield _point(f"{proof.exercise.name}: {_counted(len(group), 'mutant')} of a line, not caught on {seeds}.")
             yield from _where([each for each, _ in group], root)
+        elif each.kind == "shortcut":
+            yield _point(f"{proof.exercise.name}: a shortcut, not caught on {seeds}: {each.label}.")
         elif each.kind == "misconception":
             yield _point(f"{proof.exercise.name}: the misconception {each.label}, not caught on {seeds}.")
         elif each.kind == "cheat":
@@ -101,7 +135,7 @@ def _advice(group, case):
         yield _detail(case, 4)
     elif group[0].kind == "cheat":
         yield _detail("It looks at no argument: add cases with other answers, drawn from the generator.")
-    elif group[0].kind == "mutant":
+    elif group[0].kind in ("mutant", "shortcut"):
         yield _detail(f"{NO_CASE.format('equivalent')} If so, declare it in the specification's field `equivalent`:")
         yield _detail(f'"the reason": ({"".join(f"{quoted(each.label)}, " for each in group).strip()}),', 4)
     else:

@@ -1,4 +1,4 @@
-"""What an exercise is proved with: its misconceptions, mutants, cheats, the notebook's solution, and people's own solutions."""
+"""What an exercise is proved with: its misconceptions, mutants, shortcuts and cheats, the notebook's and people's solutions."""
 
 import ast
 import importlib
@@ -14,6 +14,7 @@ from ..course import CourseError
 from .cheats import cheats
 from .errors import told
 from .mutants import Mutant, mutants
+from .shortcuts import shortcuts
 
 NOTEBOOK = "notebook: "  # begins what was changed in the notebook's solution
 
@@ -22,7 +23,7 @@ NOTEBOOK = "notebook: "  # begins what was changed in the notebook's solution
 class Tried:
     """One function that is called on all cases, and whether it has to be right in all of them."""
 
-    kind: str  # "misconception", "mutant", "equivalent", "right", "wrong" or "cheat"
+    kind: str  # "misconception", "mutant", "shortcut", "equivalent", "right", "wrong" or "cheat"
     label: str  # unique among those of its kind
     function: Callable  # of a cheat from nothing to a function that has not been called yet: it knows what it was asked
     mutant: Mutant | None = None
@@ -39,7 +40,7 @@ class Tried:
 
 
 def to_be_tried(course, exercise):
-    """The list of Tried of an exercise; a mutant is an "equivalent" when the specification declares it as one."""
+    """The list of Tried of an exercise; mutants and shortcuts are "equivalent" when the specification declares them so."""
     solution = notebook_solution(course, exercise.name)
     right, wrong = own_solutions(course, exercise.name)
     changed = {each.what: each for each in mutants(exercise.reference, "autograder.exercises")}
@@ -56,6 +57,10 @@ def to_be_tried(course, exercise):
         *(
             Tried("equivalent" if what in alike else "mutant", what, mutant.function, mutant)
             for what, mutant in changed.items()
+        ),
+        *(
+            Tried("equivalent" if what in _declared(exercise) else "shortcut", what, function)
+            for what, function in shortcuts(exercise).items()
         ),
         *([Tried("right", "the notebook's solution", solution, notebook=True)] if solution else []),
         *(Tried("right", label, function) for label, function in right.items()),

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from transform_lab.judging import codec
+from transform_lab.judging.kinds import ARGUMENT, EARLIER_ANSWER
 from transform_lab.judging.verdict import Reply
 
 from .. import ASSIGNMENT
@@ -211,7 +212,9 @@ class Asked:
         except codec.NotPlain:
             raise self._ended("killed", FORGED) from None
         arguments = [case["args"], case["kwargs"]] if message.get("changed") is False else None
-        return Reply(outcome, message.get("value"), arguments, printable(error[:300]), printed[:300])
+        same = message.get("same_object")
+        same = same if same in (ARGUMENT, EARLIER_ANSWER) else ""
+        return Reply(outcome, message.get("value"), arguments, printable(error[:300]), printed[:300], same)
 
     def _request(self, action, arguments, seconds):
         return self._answer(self._ask(action, arguments), seconds)

@@ -262,7 +262,7 @@ def test_arguments_have_the_promised_types(name):
             named = [*zip(parameters, case.args), *case.kwargs.items()] if len(case.args) <= len(parameters) else []
             for parameter, arg in named or [("", arg) for arg in case.args]:  # chain(*transforms) takes any number
                 if isinstance(arg, np.ndarray):
-                    assert arg.dtype == np.float64
+                    assert arg.dtype in (np.float64, np.int64)
                     assert arg.shape in ((3,), (4,), (3, 3), (4, 4))
                     if arg.shape == (4,):
                         assert abs(np.linalg.norm(arg) - 1.0) < 1e-12
@@ -277,13 +277,23 @@ def test_truths_are_far_from_the_tolerance():
     for seed in range(100):
         for case in EXERCISES["is_rotation"].cases(np.random.default_rng(seed)):
             R = case.args[0]
-            off = max(np.abs(R.T @ R - np.eye(3)).max(), abs(np.linalg.det(R) - 1.0))
-            assert off < TOLERANCE / 50 or off > TOLERANCE * 50
+            off = np.abs(R.T @ R - np.eye(3)).max()
+            nearest = np.abs(R - nearest_rotation(R)).max()  # a fair way to compare, too
+            assert (
+                off < 0.35 * TOLERANCE and nearest < 0.2 * TOLERANCE or off > 7 * TOLERANCE and nearest > 2 * TOLERANCE
+            )
         for case in EXERCISES["same_rotation"].cases(np.random.default_rng(seed)):
             q1, q2 = case.args
             off = min(np.abs(q1 - q2).max(), np.abs(q1 + q2).max())
-            assert off < TOLERANCE / 50 or off > TOLERANCE * 1000
-            assert off < TOLERANCE / 50 or not np.isclose(abs(q1 @ q2), 1.0)  # a fair way to compare, too
+            angle = 2 * np.arcsin(
+                min(np.linalg.norm(q1 - q2), np.linalg.norm(q1 + q2), 2.0) / 2
+            )  # of which half, or all, is compared
+            assert off < 0.5 * TOLERANCE and angle < 0.9 * TOLERANCE or off > 1.9 * TOLERANCE and angle > 3 * TOLERANCE
+
+
+def nearest_rotation(R):
+    U, _, Vt = np.linalg.svd(R)
+    return U @ np.diag([1.0, 1.0, np.linalg.det(U @ Vt)]) @ Vt
 
 
 def test_every_family_of_truths_has_no_single_answer_but_negatives():
@@ -302,14 +312,14 @@ def test_rotations_of_all_kinds_reach_transform_to_pose():
         for case in EXERCISES["transform_to_pose"].cases(np.random.default_rng(seed)):
             R = case.args[0][:3, :3]
             assert np.allclose(R.T @ R, np.eye(3), atol=1e-12) and np.linalg.det(R) > 0
-            assert np.abs(case.args[0][:3, 3]).max() > 0.1 or not case.args[0][:3, 3].any()
             traces.append(np.trace(R))
             if np.array_equal(R, R.round()):
                 exact.add(tuple(R.ravel()))
         assert len(exact) == 24
         half_turns = sum(abs(trace + 1.0) < 1e-12 for trace in traces)
-        assert half_turns == 9 + 3  # nine of the 24, and three about slanted axes
-        assert any(-1.0 + 1e-7 < trace < -1.0 + 1e-5 for trace in traces)  # almost half turns
+        # nine of the 24, one in whole numbers or none, four about slanted axes, six about almost an axis of A, two that are almost half turns
+        assert half_turns >= 9 + 4 + 6
+        assert any(-1.0 + 1e-7 < trace < -1.0 + 1e-4 for trace in traces)  # almost half turns
         assert any(3.0 - 1e-4 < trace < 3.0 for trace in traces)
 
 
@@ -343,7 +353,7 @@ def test_chains_and_distances_are_of_all_kinds():
 def test_public_key_is_small():
     sizes = {name: len(json.dumps(key_of(name))) for name in EXERCISES}
     print(f"public key: {sum(sizes.values()):,} bytes", sizes)
-    assert sum(sizes.values()) < 2_500_000  # a tenth of that when zipped
+    assert sum(sizes.values()) < 1_500_000  # a tenth of that when zipped
 
 
 @every_exercise

@@ -44,12 +44,12 @@ STEPS = {
     ],
     ("waypoint", "transform_to_pose"): [
         lambda step: lambda o, offset: step(matrix(o) @ matrix(pose_of(offset, (0, 0, 0, 1)))),
-        lambda step: lambda o, offset: pose_of(
-            (matrix(o) @ homogeneous(offset))[:3], orientation(step(matrix(o)))
-        ),
+        lambda step: lambda o, offset: pose_of((matrix(o) @ homogeneous(offset))[:3], orientation(step(matrix(o)))),
     ],
     ("waypoint", "transform_pose"): [lambda step: lambda o, offset: step(matrix(o), pose_of(offset, (0, 0, 0, 1)))],
-    ("waypoint", "chain"): [lambda step: lambda o, offset: as_pose(step(matrix(o), matrix(pose_of(offset, (0, 0, 0, 1)))))],
+    ("waypoint", "chain"): [
+        lambda step: lambda o, offset: as_pose(step(matrix(o), matrix(pose_of(offset, (0, 0, 0, 1)))))
+    ],
     ("relative_transform", "invert_transform"): [lambda step: lambda b, c: step(b) @ c],
     ("relative_transform", "chain"): [lambda step: lambda b, c: step(inv(b), c)],
     ("relative_transform", "make_transform"): [

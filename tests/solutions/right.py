@@ -498,7 +498,7 @@ def nested_list(R, p):
 @right("make_transform")
 def pad(R, p):
     """np.pad, then the last column."""
-    T = np.pad(R, ((0, 1), (0, 1)))
+    T = np.pad(R.astype(float), ((0, 1), (0, 1)))
     T[:, -1] = *p, 1
     return T
 
@@ -1127,7 +1127,7 @@ def as_a_transform(a_T_b, p_in_b):
 @right("transform_point")
 def along_the_axes(a_T_b, p_in_b):
     """In place on a copy: from the origin, along x, along y, along z."""
-    here = a_T_b[:3, 3].copy()
+    here = a_T_b[:3, 3].astype(float)
     for length, axis in zip(p_in_b, a_T_b[:3, :3].T):
         here += length * axis
     return here

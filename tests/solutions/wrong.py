@@ -3293,3 +3293,23 @@ def wp_inverse_no_orientation(object_pose, offset):
     pose = Pose()
     pose.position = Point(object_pose.position.x + r[0], object_pose.position.y + r[1], object_pose.position.z + r[2])
     return pose
+
+
+# ---------------------------------------------------------------- the type of an argument of whole numbers is kept
+
+
+@wrong("make_transform", "integer-truncation")
+def padded_as_it_is(R, p):
+    """np.pad keeps the type of R: whole numbers cut off the translation's fractions."""
+    T = np.pad(R, ((0, 1), (0, 1)))
+    T[:, -1] = *p, 1
+    return T
+
+
+@wrong("transform_point")
+def added_in_place(a_T_b, p_in_b):
+    """Adds fractions to an array of whole numbers, which NumPy refuses."""
+    here = a_T_b[:3, 3].copy()
+    for length, axis in zip(p_in_b, a_T_b[:3, :3].T):
+        here += length * axis
+    return here

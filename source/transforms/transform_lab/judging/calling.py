@@ -6,9 +6,11 @@ from collections.abc import Callable
 from contextlib import redirect_stdout
 
 from . import codec
+from .kinds import ARGUMENT, EARLIER_ANSWER
 from .plain import Plain
 from .verdict import Reply
 
+_before: list = []  # the last answer that was returned, and what it was then, as plain data
 MOST_PRINTED = 200  # characters of what a function prints while it is checked
 
 
@@ -28,7 +30,18 @@ def reply(function: Callable, args: list, kwargs: dict) -> Reply:
             return Reply("not done")
         return Reply("raised", error=one_line(error))
     after = [[codec.encode(arg) for arg in args], {key: codec.encode(arg) for key, arg in kwargs.items()}]
-    return Reply("returned", codec.encode(value), after, printed=printed.getvalue()[:MOST_PRINTED])
+    plain = codec.encode(value)
+    same = same_object(value, plain, [*args, *kwargs.values()])
+    return Reply("returned", plain, after, printed=printed.getvalue()[:MOST_PRINTED], same_object=same)
+
+
+def same_object(value: object, plain: Plain, given: list) -> str:
+    """What the answer to this call (as it is, and as plain data) is instead of an object of its own; see Reply."""
+    changed = _before and codec.encode(_before[0]) != _before[1]
+    _before[:] = value, plain
+    if changed:
+        return EARLIER_ANSWER
+    return ARGUMENT if any(value is arg for arg in given) else ""
 
 
 def _raised_in(function, error):

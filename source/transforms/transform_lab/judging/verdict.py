@@ -28,6 +28,7 @@ class Reply:
     arguments: Plain = None  # the positional and keyword arguments after the call, as plain data: [list, dict]
     error: str = ""  # the student's own error, or why the call had to be stopped; in one line
     printed: str = ""  # the beginning of what it printed
+    same_object: str = ""  # ARGUMENT or EARLIER_ANSWER (kinds.py), when the answer is no object of its own
 
     @property
     def finished(self) -> bool:
@@ -44,10 +45,16 @@ class Outcome:
     got: dict | None = None  # the answer's parts; None when nothing could be compared,
     problem: tuple | None = None  # then this says why: (id of a general misconception or "", what came)
     mutated: bool = False  # the call changed its arguments, which costs the case
+    same_object: str = ""  # as in the Reply, where the answer has to be an object of its own
+
+    @property
+    def untouched(self) -> bool:
+        """Whether the call left everything else as it was, and its answer to its caller."""
+        return not self.mutated and not self.same_object
 
     @property
     def right(self) -> bool:
-        return self.answered and not self.mutated
+        return self.answered and self.untouched
 
 
 @dataclass
@@ -182,7 +189,8 @@ def compare(returns: str, case: PlainCase, reply: Reply) -> Outcome:
         return Outcome(problem=(unfit.misconception, str(unfit)), mutated=mutated)
     parts = KINDS[returns].parts
     good = frozenset(name for name, part in parts.items() if part.agree(got[name], expected[name]))
-    return Outcome(good, len(good) == len(parts), got, mutated=mutated)
+    same = "" if KINDS[returns].own(reply.same_object) else reply.same_object
+    return Outcome(good, len(good) == len(parts), got, mutated=mutated, same_object=same)
 
 
 def _credit(exercise: PlainExercise, cases: list[PlainCase], outcomes: list[Outcome]) -> float:
@@ -194,7 +202,7 @@ def _credit(exercise: PlainExercise, cases: list[PlainCase], outcomes: list[Outc
         families.setdefault(case["family"], []).append(outcome)
     earned = 0.0
     for family, members in families.items():
-        shared = frozenset.intersection(*(frozenset() if member.mutated else member.parts for member in members))
+        shared = frozenset.intersection(*(member.parts if member.untouched else frozenset() for member in members))
         complete = all(member.right for member in members)
         share = 1.0 if complete else sum(exercise["credit"].get(part, 0.0) for part in shared)
         earned += exercise["weights"][family] * share
