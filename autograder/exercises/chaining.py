@@ -384,7 +384,7 @@ def _with_position(of):
 
 def _with_orientation(of):
     """`transform_pose` of someone whose position is right and whose quaternion is `of(a_T_b, pose_in_b)`."""
-    return lambda a_T_b, pose_in_b: pose_of(position(transform_pose(a_T_b, pose_in_b)), of(a_T_b, pose_in_b))
+    return lambda a_T_b, pose_in_b: pose_of(a_T_b[:3, :3] @ position(pose_in_b) + a_T_b[:3, 3], of(a_T_b, pose_in_b))
 
 
 def _as_pose(T, order=slice(None)):

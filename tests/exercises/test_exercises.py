@@ -279,15 +279,11 @@ def test_truths_are_far_from_the_tolerance():
             R = case.args[0]
             off = np.abs(R.T @ R - np.eye(3)).max()
             nearest = np.abs(R - nearest_rotation(R)).max()  # a fair way to compare, too
-            assert (
-                off < 0.35 * TOLERANCE and nearest < 0.2 * TOLERANCE or off > 7 * TOLERANCE and nearest > 2 * TOLERANCE
-            )
+            assert off < 0.35 * TOLERANCE and nearest < 0.2 * TOLERANCE or off > 7 * TOLERANCE and nearest > 2 * TOLERANCE
         for case in EXERCISES["same_rotation"].cases(np.random.default_rng(seed)):
             q1, q2 = case.args
             off = min(np.abs(q1 - q2).max(), np.abs(q1 + q2).max())
-            angle = 2 * np.arcsin(
-                min(np.linalg.norm(q1 - q2), np.linalg.norm(q1 + q2), 2.0) / 2
-            )  # of which half, or all, is compared
+            angle = 2 * np.arcsin(min(np.linalg.norm(q1 - q2), np.linalg.norm(q1 + q2), 2.0) / 2)  # of which half, or all, is compared
             assert off < 0.5 * TOLERANCE and angle < 0.9 * TOLERANCE or off > 1.9 * TOLERANCE and angle > 3 * TOLERANCE
 
 

@@ -3313,3 +3313,141 @@ def added_in_place(a_T_b, p_in_b):
     for length, axis in zip(p_in_b, a_T_b[:3, :3].T):
         here += length * axis
     return here
+
+
+# ---------------------------------------------------------------- what is wrong somewhere only, of transform and pose
+
+
+def _components(m, slip=0, only_x=False):
+    """x, y, z, w of a 4x4 matrix by the formula with a branch for each, with a sign of w's wrong in z's, or with x's for all three."""
+    trace = m[0, 0] + m[1, 1] + m[2, 2]
+    if trace > 0:
+        s = 2 * sqrt(trace + 1)
+        return (m[2, 1] - m[1, 2]) / s, (m[0, 2] - m[2, 0]) / s, (m[1, 0] - m[0, 1]) / s, s / 4
+    if only_x or m[0, 0] > m[1, 1] and m[0, 0] > m[2, 2]:
+        s = 2 * np.sqrt(1 + m[0, 0] - m[1, 1] - m[2, 2])
+        return s / 4, (m[0, 1] + m[1, 0]) / s, (m[0, 2] + m[2, 0]) / s, (m[2, 1] - m[1, 2]) / s
+    if m[1, 1] > m[2, 2]:
+        s = 2 * sqrt(1 + m[1, 1] - m[0, 0] - m[2, 2])
+        return (m[0, 1] + m[1, 0]) / s, s / 4, (m[1, 2] + m[2, 1]) / s, (m[0, 2] - m[2, 0]) / s
+    s = 2 * sqrt(1 + m[2, 2] - m[0, 0] - m[1, 1])
+    return (m[0, 2] + m[2, 0]) / s, (m[1, 2] + m[2, 1]) / s, s / 4, (-1) ** slip * (m[1, 0] - m[0, 1]) / s
+
+
+def _matrix_of(pose):
+    p, q = pose.position, pose.orientation
+    T = tft.quaternion_matrix([q.x, q.y, q.z, q.w])
+    T[:3, 3] = p.x, p.y, p.z
+    return T
+
+
+def _there_and_back(m):
+    """x, y, z, w by way of roll, pitch and yaw."""
+    return tft.quaternion_from_euler(atan2(m[2, 1], m[2, 2]), -math.asin(max(-1, min(1, m[2, 0]))), atan2(m[1, 0], m[0, 0]))
+
+
+@wrong("transform_to_pose", "branch-wrong")
+def ttp_slip_in_z_branch(matrix):
+    """corner: the sign of w is wrong where z is the largest."""
+    return Pose(Point(*matrix[:3, 3]), Quaternion(*_components(matrix, slip=1)))
+
+
+@wrong("transform_pose", "branch-missing")
+def tp_x_branch_only(a_T_b, pose_in_b):
+    """corner: one formula for all negative traces: right unless x is 0."""
+    T = a_T_b @ _matrix_of(pose_in_b)
+    return Pose(Point(*T[:3, 3]), Quaternion(*_components(T, only_x=True)))
+
+
+@wrong("transform_pose", "gimbal-lock")
+def tp_angles_there_and_back(a_T_b, pose_in_b):
+    """corner: angles on the way, which cannot be told apart where the x axis is upright."""
+    T = a_T_b @ _matrix_of(pose_in_b)
+    return Pose(Point(*T[:3, 3]), Quaternion(*_there_and_back(T)))
+
+
+@wrong("waypoint", "gimbal-lock")
+def wp_angles_there_and_back(object_pose, offset):
+    """corner: the same, for a pose that need not be turned at all."""
+    T = _matrix_of(object_pose)
+    return Pose(Point(*(T @ [*offset, 1])[:3]), Quaternion(*_there_and_back(T)))
+
+
+@wrong("is_rotation", "exact-comparison")
+def isrot_determinant_is_one(R):
+    """corner: the determinant compared with ==."""
+    return np.allclose(R @ R.T, np.eye(3), rtol=0, atol=1e-6) and np.linalg.det(R) == 1
+
+
+@wrong("is_rotation", "determinant-only")
+def isrot_asks_scipy(R):
+    """SciPy repairs what is no rotation."""
+    try:
+        Rotation.from_matrix(R)
+    except ValueError:
+        return False
+    return True
+
+
+@wrong("is_rotation", "default-tolerance")
+def isrot_allclose_as_it_comes(R):
+    """corner: np.allclose has tolerances of its own."""
+    return np.allclose(R.T @ R, np.eye(3)) and np.linalg.det(R) > 0
+
+
+@wrong("same_rotation", "exact-comparison")
+def same_dot_is_one(q1, q2):
+    """corner: the dot product compared with ==."""
+    return abs(np.dot(q1, q2)) == 1
+
+
+@wrong("transform_point", "homogeneous-order")
+def point_one_in_front(a_T_b, p_in_b):
+    """The 1 stands in front."""
+    return (a_T_b @ np.append(1, p_in_b))[:3]
+
+
+@wrong("make_transform", "yaw-only")
+def make_two_by_two(R, p):
+    """Slip: a 2x2 slice for a 3x3 one."""
+    T = np.eye(4)
+    T[:2, :2] = R[:2, :2]
+    T[:3, 3] = p
+    return T
+
+
+@wrong("waypoint", "wrong-axis")
+def wp_up_alone(object_pose, offset):
+    """Only the offset's z counts."""
+    T = _matrix_of(object_pose)
+    return Pose(Point(*(T @ [0, 0, offset[2], 1])[:3]), object_pose.orientation)
+
+
+@wrong("waypoint", "base-frame-offset")
+def wp_lift_is_up(object_pose, offset):
+    """The lift along the base's z axis."""
+    x, y, z = (_matrix_of(object_pose) @ [offset[0], offset[1], 0, 1])[:3]
+    return Pose(Point(x, y, z + offset[2]), object_pose.orientation)
+
+
+@wrong("rotation_about_z", "rotation-transposed")
+def z_passive_library(degrees):
+    """sympy's rot_axis3 is the passive one."""
+    c, s = cosd(degrees), sind(degrees)
+    return np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
+
+
+@wrong("relative_transform", "rotation-vectors-subtracted")
+def rel_rotation_vectors(a_T_b, a_T_c):
+    """Rotation vectors, subtracted."""
+    b, c = (Rotation.from_matrix(T[:3, :3]).as_rotvec() for T in (a_T_b, a_T_c))
+    T = inv(a_T_b) @ a_T_c
+    T[:3, :3] = Rotation.from_rotvec(c - b).as_matrix()
+    return T
+
+
+@wrong("pre_grasp", "zero-taken-for-missing")
+def pg_or_ten_centimetres(object_pose, distance=None):
+    """corner: 0 is false."""
+    T = _matrix_of(object_pose)
+    return Pose(Point(*(T @ [-(distance or 0.1), 0, 0, 1])[:3]), object_pose.orientation)
