@@ -1,8 +1,10 @@
 """The exercises of notebook 3: chains of transforms, and a pose in another frame."""
 
 from functools import reduce
+from itertools import pairwise
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 from transform_lab.judging.naming import together
 
 from .cases import (
@@ -13,7 +15,6 @@ from .cases import (
     generic_transform,
     half_turn,
     half_turns_about_almost_an_axis,
-    large_turn,
     matrix,
     near,
     no_turn,
@@ -35,17 +36,26 @@ from .cases import (
     whole_pose,
     wide_turn,
 )
+from .conversions import (
+    BEYOND_120,
+    BY_ANGLES,
+    BY_BRANCHES,
+    BY_TRACE,
+    ORDERS,
+    from_euler,
+    near_half_turns,
+    product,
+    rotation_vector,
+)
 from .equivalent import MAKING_A_POSE, READING_A_POSE
 from .features import number_of, of_each, of_pose, of_product, of_transform
 from .homogeneous_transforms import (
     BOTTOM_ROW,
-    BREAKS_AT_HALF_TURN,
     ENTRY_BY_ENTRY,
     NO_ORIENTATION,
-    ORDERS,
     QUATERNION_ORDER,
-    from_euler,
-    trace_formula_guarded,
+    at_lock,
+    open_where,
 )
 from .specification import Case, Exercise, Misconception
 
@@ -92,6 +102,51 @@ def _with_rotation(of):
     return lambda *transforms: transform(of([T[:3, :3] for T in transforms]), sum(T[:3, 3] for T in transforms))
 
 
+def _pairs(transforms, alone):
+    """`chain` of someone for whom a single transform is something else."""
+    return chain(*transforms) if len(transforms) > 1 else alone
+
+
+def _alone(error):
+    """`chain` that raises an error for a single transform."""
+
+    def wrong(*transforms):
+        if len(transforms) == 1:
+            raise error
+        return chain(*transforms)
+
+    return wrong
+
+
+def _in_pairs(*transforms):
+    """Multiplied two by two until one is left; one that has no partner is lost."""
+    row = list(transforms)
+    while len(row) > 1:
+        row = [first @ second for first, second in zip(row[::2], row[1::2])]
+    return row[0]
+
+
+def _rotation_first(*transforms):
+    R, p = np.eye(3), np.zeros(3)
+    for T in transforms:
+        R = R @ T[:3, :3]
+        p = p + R @ T[:3, 3]
+    return transform(R, p)
+
+
+def _translation_last(*transforms):
+    """From the last link on, each translation turned by the rotation of the link that it belongs to."""
+    R, p = np.eye(3), np.zeros(3)
+    for T in reversed(transforms):
+        R = T[:3, :3] @ R
+        p = T[:3, 3] + R @ p
+    return transform(R, p)
+
+
+ALONE = (
+    "Your function goes wrong for a single transform.",
+    "A chain can have one link only: what is its last frame, described in its first?",
+)
 SOME_LEFT_OUT = (
     "Some of the transforms did not get into the product.",
     "Try your function on one, on two, and on five transforms, and count how many it multiplies.",
@@ -126,6 +181,8 @@ CHAIN = Exercise(
                 lambda *transforms: chain(*reversed(transforms)),
                 lambda *transforms: chain(*(transforms if len(transforms) < 3 else reversed(transforms))),
                 lambda *transforms: chain(*reversed(transforms[2:]), *transforms[:2]),  # right for two
+                lambda *transforms: chain(*reversed(transforms[:-1]), transforms[-1]),  # right for two, too
+                lambda *transforms: chain(transforms[-1], *transforms[:-1]),
             )
         ),
         *(
@@ -134,6 +191,32 @@ CHAIN = Exercise(
                 lambda *transforms: reduce(np.multiply, transforms),
                 lambda *transforms: reduce(np.multiply, transforms, np.eye(4)),
             )
+        ),
+        *(Misconception("single-transform", _alone(error), *ALONE) for error in (IndexError, TypeError, ValueError)),
+        *(
+            Misconception("single-transform", lambda *transforms, alone=alone: _pairs(transforms, alone), *ALONE)
+            for alone in (np.eye(4), np.zeros((4, 4)))
+        ),
+        *(
+            Misconception(
+                "updated-too-early",
+                wrong,
+                "Rotation and translation are worked out one after the other, and the second with the first one's new value.",
+                "Which rotation do the axes have along which the next translation counts: that before this link, or after it?",
+            )
+            for wrong in (_rotation_first, _translation_last)
+        ),
+        Misconception(
+            "order-reversed",
+            lambda *transforms: transform(chain(*transforms[::-1])[:3, :3], chain(*transforms)[:3, 3]),
+            "The translation is right, but the rotations were multiplied in the reverse order.",
+            MATCH_THE_NAMES,
+        ),
+        Misconception(
+            "order-reversed",
+            lambda *transforms: transform(chain(*transforms)[:3, :3], chain(*transforms[::-1])[:3, 3]),
+            "The rotation is right, but the translations were put together in the reverse order.",
+            MATCH_THE_NAMES,
         ),
         Misconception("offset-not-rotated", _with_rotation(lambda rotations: chain(*rotations)), *EACH_BY_ITSELF),
         Misconception(
@@ -177,6 +260,8 @@ CHAIN = Exercise(
                 lambda *transforms: transforms[-1],
                 lambda *transforms: chain(*transforms[:3]),
                 lambda *transforms: chain(*transforms[:4]),
+                _in_pairs,
+                lambda *transforms: chain(np.eye(4), *transforms[: len(transforms) // 2 * 2]),
                 lambda *transforms: chain(*(T for i, T in enumerate(transforms) if not _earlier(T, transforms[:i]))),
             )
         ),
@@ -190,12 +275,13 @@ CHAIN = Exercise(
             Misconception(
                 "applied-twice",
                 wrong,
-                "One transform is in the product twice.",
-                "What does your product start with, and which transform does your loop multiply first?",
+                "Some of the transforms are in the product twice.",
+                "Write down, for two and for three transforms, which of them your product takes in which step.",
             )
             for wrong in (
                 lambda *transforms: chain(transforms[0], *transforms),
                 lambda *transforms: chain(*transforms, transforms[-1]),
+                lambda *transforms: chain(np.eye(4), *(T for pair in pairwise(transforms) for T in pair)),
             )
         ),
         Misconception(
@@ -236,8 +322,8 @@ def transform_pose_cases(rng):
     T, p = generic_transform(rng), generic_pose(rng)
     families = {
         "frames turned by quarter turns": [
-            (transform(R, vector(rng)), pose(S, vector(rng))) for R, S in zip(shuffled[:12], shuffled[12:])
-        ],
+            (transform(R, vector(rng)), pose(R.T @ S, vector(rng))) for R, S in zip(shuffled, along_axes)
+        ],  # each of the 24 comes out once
         "tilted frames": [
             (T, p),
             (T, generic_pose(rng)),
@@ -298,7 +384,7 @@ def _with_position(of):
 
 def _with_orientation(of):
     """`transform_pose` of someone whose position is right and whose quaternion is `of(a_T_b, pose_in_b)`."""
-    return lambda a_T_b, pose_in_b: pose_of(position(transform_pose(a_T_b, pose_in_b)), of(a_T_b, pose_in_b))
+    return lambda a_T_b, pose_in_b: pose_of(a_T_b[:3, :3] @ position(pose_in_b) + a_T_b[:3, 3], of(a_T_b, pose_in_b))
 
 
 def _as_pose(T, order=slice(None)):
@@ -318,6 +404,47 @@ def _angles_added(a_T_b, pose_in_b):
     return from_euler(sum(roll_pitch_yaw(T[:3, :3]) for T in (a_T_b, matrix(pose_in_b))))
 
 
+def _rotation_vectors_added(T, pose_in_b):
+    return Rotation.from_rotvec(sum(rotation_vector(M[:3, :3]) for M in (T, matrix(pose_in_b)))).as_quat()
+
+
+def _quaternion_product(row, column):
+    """The product of quaternions with one sign wrong in one of its four sums."""
+
+    def wrong(T, pose_in_b):
+        first, second = quaternion(T[:3, :3]), orientation(pose_in_b)
+        units = np.eye(4)
+        result = product(first, second)
+        result[row] -= 2.0 * product(first, units[column])[row] * second[column]
+        return result
+
+    return wrong
+
+
+def _cross_product_reversed(number):
+    """The product of quaternions with two signs wrong in one number: the cross product's."""
+
+    def wrong(T, pose_in_b):
+        first, second = quaternion(T[:3, :3]), orientation(pose_in_b)
+        result = product(first, second)
+        result[number] -= 2.0 * np.cross(first[:3], second[:3])[number]
+        return result
+
+    return wrong
+
+
+def _with_positive_w(q):
+    return np.append(q[:3], abs(q[3]))
+
+
+ONE_SIGN = (
+    "One of the orientation's four numbers is wrong: a sign in the product of quaternions.",
+    "Multiply by a turn about x, about y and about z, one after the other, and compare with what tft makes of them.",
+)
+ONE_TURNED_BACK = (
+    "One of the two rotations was used the opposite way round: transposed, or its quaternion conjugated.",
+    "The pose is turned in B, and B is turned in A: neither has to be undone.",
+)
 THE_WRONG_WAY_ROUND = (
     "The two transforms were multiplied in the wrong order.",
     MATCH_THE_NAMES,
@@ -453,23 +580,68 @@ TRANSFORM_POSE = Exercise(
             lambda a_T_b, pose_in_b: _as_pose(matrix(pose_in_b) @ np.linalg.inv(a_T_b)),
             *together(FROM_A_TO_B, THE_WRONG_WAY_ROUND),
         ),
-        Misconception(
-            "trace-formula-only",
-            _with_orientation(lambda T, p: trace_formula_guarded(T @ matrix(p))),
-            *BREAKS_AT_HALF_TURN,
-            varies=lambda T, p: ("orientation",) if large_turn((T @ matrix(p))[:3, :3]) else (),
+        *(
+            Misconception(
+                identifier,
+                _with_orientation(lambda T, p, wrong=wrong: wrong(T @ matrix(p))),
+                *says,
+                **open_where(varies, fails, lambda T, p: T @ matrix(p)),
+            )
+            for identifier, says, wrong, varies, fails in (BY_TRACE, BEYOND_120, BY_ANGLES, *BY_BRANCHES)
         ),
-        Misconception(
-            "quaternions-added",
-            _with_orientation(lambda T, p: _added(quaternion(T[:3, :3]), orientation(p))),
-            "The two quaternions were added.",
-            "One rotation after another is a product, of quaternions as of matrices.",
+        *(
+            Misconception(
+                "quaternions-added",
+                _with_orientation(lambda T, p, of=of: of(quaternion(T[:3, :3]), orientation(p))),
+                "The two quaternions were added.",
+                "One rotation after another is a product, of quaternions as of matrices.",
+            )
+            for of in (_added, np.add)
         ),
         Misconception(
             "euler-angles-added",
             _with_orientation(_angles_added),
             "Roll, pitch and yaw of the two rotations were added.",
             "Angles add up when both turns share an axis. One rotation after another is a product.",
+            varies=at_lock(lambda T, p: T, lambda T, p: matrix(p)),
+        ),
+        Misconception(
+            "rotation-vectors-added",
+            _with_orientation(_rotation_vectors_added),
+            "The rotation vectors (axis times angle) of the two rotations were added.",
+            "They add up when both turns share an axis. One rotation after another is a product.",
+            varies=lambda T, p: ("orientation",) if any(near_half_turns(M[:3, :3]) for M in (T, matrix(p))) else (),
+        ),
+        Misconception(
+            "elementwise-product",
+            _with_orientation(lambda T, p: quaternion(T[:3, :3]) * orientation(p)),
+            "The two quaternions were multiplied number by number.",
+            "The product of two quaternions mixes their numbers: tft has a function for it.",
+        ),
+        Misconception(
+            "change-of-basis",
+            _with_orientation(lambda T, p: np.append(T[:3, :3] @ orientation(p)[:3], orientation(p)[3])),
+            "The turn is told along A's axes, but B's own turn is not in the answer.",
+            "The pose is turned in B, and B is turned in A: what is the whole turn from A to the pose?",
+        ),
+        *(
+            Misconception("formula-slip", _with_orientation(_quaternion_product(row, column)), *ONE_SIGN)
+            for row in range(4)
+            for column in range(4)
+        ),
+        *(Misconception("formula-slip", _with_orientation(_cross_product_reversed(k)), *ONE_SIGN) for k in range(3)),
+        Misconception(
+            "sign-ignored",
+            _with_orientation(lambda T, p: _with_positive_w(product(quaternion(T[:3, :3]), orientation(p)))),
+            "The orientation goes wrong where the product's w is negative.",
+            "Changing the sign of w alone gives another orientation; what happens if all four signs change?",
+        ),
+        *(
+            Misconception("rotation-transposed", _with_orientation(of), *ONE_TURNED_BACK)
+            for of in (
+                lambda T, p: quaternion(T[:3, :3].T @ matrix(p)[:3, :3]),
+                lambda T, p: quaternion(T[:3, :3] @ matrix(p)[:3, :3].T),
+            )
         ),
         Misconception(
             "rotation-applied-twice",

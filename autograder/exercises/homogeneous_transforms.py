@@ -14,11 +14,9 @@ from .cases import (
     half_turn,
     half_turn_to_rounding,
     half_turns_about_almost_an_axis,
-    large_turn,
     matrix,
     near,
     no_turn,
-    off_diagonal,
     orientation,
     pose,
     pose_of,
@@ -39,6 +37,26 @@ from .cases import (
     wide_turn,
     with_bottom_row,
     x_axis_upright,
+)
+from .conversions import (
+    BEYOND_120,
+    BREAKS_AT_HALF_TURN,
+    BY_ANGLES,
+    BY_BRANCHES,
+    BY_TRACE,
+    ORDERS,
+    angle_not_halved,
+    at_half_turns,
+    axis_and_angle,
+    by_tangents,
+    from_euler,
+    half_turn_by_tolerance,
+    lengths_with_signs,
+    near_half_turns,
+    slips,
+    trace_formula,
+    trace_formula_guarded,
+    trace_formula_in_plain_python,
 )
 from .equivalent import IN_SINGLE_PRECISION, LISTS, MAKING_A_POSE, READING_A_POSE, WHOLE_STAY_WHOLE
 from .features import of_orientation, of_pose, of_rotation, of_transform, of_vector, together_small
@@ -130,6 +148,30 @@ TRANSLATION_NEGATED = (
     "The translation is where B's origin is in A, seen from A's origin.",
 )
 
+PARTLY_COPIED = (
+    "Not all numbers of the rotation have got into the matrix: only those of a turn about z.",
+    "How many rows and columns does a rotation in space have? Look at the slice that you copy into.",
+)
+SUM_OF_BOTH = (
+    "The matrices of rotation and translation were added.",
+    "Which product of two matrices applies first one and then the other?",
+)
+NOT_ALL_OF_THE_POSITION = (
+    "The translation is not p: one of its numbers is missing, or in another place.",
+    "Check each component by itself: x, y and z, from top to bottom.",
+)
+INVERSE_TRANSLATION = (
+    "The translation is that of the inverse: A's origin, seen from B.",
+    "The translation is B's origin, already written in A; nothing needs to be done to it.",
+)
+
+
+def _turned_about_z_only(R):
+    kept = np.eye(3)
+    kept[:2, :2] = R[:2, :2]
+    return kept
+
+
 MAKE_TRANSFORM = Exercise(
     name="make_transform",
     returns="transform",
@@ -160,6 +202,25 @@ MAKE_TRANSFORM = Exercise(
         Misconception("integer-truncation", lambda R, p: np.trunc(make_transform(R, p)), *TRUNCATED),
         Misconception("wrong-direction", lambda R, p: np.linalg.inv(make_transform(R, p)), *INVERSE_RETURNED),
         Misconception("wrong-sign", lambda R, p: make_transform(R, -p), *TRANSLATION_NEGATED),
+        Misconception("wrong-direction", lambda R, p: make_transform(R, -R.T @ p), *INVERSE_TRANSLATION),
+        Misconception("yaw-only", lambda R, p: make_transform(_turned_about_z_only(R), p), *PARTLY_COPIED),
+        *(
+            Misconception("wrong-position", lambda R, p, of=of: make_transform(R, of(p)), *NOT_ALL_OF_THE_POSITION)
+            for of in (
+                *(lambda p, kept=kept: p * kept for kept in ([1, 1, 0], [1, 0, 1], [0, 1, 1])),
+                *(lambda p, order=order: p[order] for order in ([2, 1, 0], [0, 2, 1], [1, 0, 2])),
+            )
+        ),
+        Misconception(
+            "added-not-multiplied",
+            lambda R, p: make_transform(R, (0, 0, 0)) + make_transform(np.eye(3), p),
+            *SUM_OF_BOTH,
+        ),
+        Misconception(
+            "elementwise-product",
+            lambda R, p: make_transform(R, (0, 0, 0)) * make_transform(np.eye(3), p),
+            *ENTRY_BY_ENTRY,
+        ),
         Misconception(
             "wrong-shape",
             lambda R, p: make_transform(R, p)[:3],
@@ -194,10 +255,6 @@ def _hand(R=None, p=(-0.1, 0, 0)):
     return lambda: transform(hand_transform()[:3, :3] if R is None else R, p)
 
 
-def _columns(x, y, z):
-    return np.column_stack((x, y, z)).astype(float)
-
-
 WRONG_LENGTH = (
     "The hand moved in the right direction, but not by the right distance.",
     "The task says centimetres; lengths in a transform are metres.",
@@ -211,7 +268,7 @@ ROLLED_ABOUT_ANOTHER_AXIS = (
     "Rolling leaves the index finger where it is: which column of the rotation must not change?",
 )
 LEFT_HANDED = (
-    "One axis of your frame points the opposite way, which makes a left-handed frame.",
+    "Your frame is left-handed: a mirror image of one that a right hand can take, as when one axis points the opposite way.",
     "Hold up your right hand again: once two fingers are placed, the third has no choice.",
 )
 
@@ -256,14 +313,7 @@ HAND_TRANSFORM = Exercise(
         ),
         Misconception("position-missing", _hand(p=(0, 0, 0)), *NO_TRANSLATION),
         Misconception("orientation-identity", _hand(np.eye(3)), *NO_ROTATION),
-        *(
-            Misconception("left-handed", _hand(_columns(x, y, z)), *LEFT_HANDED)
-            for x, y, z in (
-                ((1, 0, 0), (0, 0, 1), (0, 1, 0)),
-                ((1, 0, 0), (0, 0, -1), (0, -1, 0)),
-                ((-1, 0, 0), (0, 0, -1), (0, 1, 0)),
-            )
-        ),
+        *(Misconception("left-handed", _hand(-R), *LEFT_HANDED) for R in signed_permutations()),  # all mirror images
         Misconception(
             "degrees-as-radians",
             _hand(Rotation.from_euler("x", -90).as_matrix()),
@@ -309,76 +359,29 @@ def _to_pose_with(position=None, orientation=None):
     return wrong
 
 
-def _trace_formula(matrix):
-    w = np.sqrt(1.0 + np.trace(matrix[:3, :3])) / 2.0
-    return np.append(off_diagonal(matrix) / (4.0 * w), w)
-
-
-def _trace_formula_in_plain_python(matrix):
-    w = math.sqrt(1.0 + float(np.trace(matrix[:3, :3]))) / 2.0
-    return [float(difference) / (4.0 * w) for difference in off_diagonal(matrix)] + [w]  # raises at a half turn
-
-
-def trace_formula_guarded(matrix):
-    return _trace_formula(matrix) if np.trace(matrix[:3, :3]) > -1.0 + 1e-9 else np.array([0.0, 0.0, 0.0, 1.0])
-
-
-def _half_turn_by_tolerance(matrix):
-    """Right for every half turn, and takes some for one that are none."""
-    q = quaternion(matrix[:3, :3])
-    return np.append(q[:3], 0.0) if np.isclose(np.trace(matrix[:3, :3]), -1.0) else q
-
-
-def _lengths_with_signs(signs):
-    """The components' sizes from the diagonal, and the signs of x, y, z from `signs(sizes, differences)`."""
-
-    def wrong(matrix):
-        a, b, c = np.diag(matrix)[:3]
-        squares = np.array([1 + a - b - c, 1 - a + b - c, 1 - a - b + c, 1 + a + b + c])
-        sizes = np.sqrt(np.maximum(squares, 0.0)) / 2.0
-        return np.append(signs(sizes[:3], off_diagonal(matrix)), sizes[3])
-
-    return wrong
-
-
-def _axis_and_angle(matrix):
-    """The axis from the differences off the diagonal; 0/0 without a rotation, a zero vector at a half turn."""
-    angle = np.arccos(np.clip((np.trace(matrix[:3, :3]) - 1.0) / 2.0, -1.0, 1.0))
-    axis = off_diagonal(matrix) / (2.0 * np.sin(angle))
-    return np.append(axis * np.sin(angle / 2.0), np.cos(angle / 2.0))
-
-
-def _angle_not_halved(matrix):
-    rotation_vector = Rotation.from_matrix(matrix[:3, :3]).as_rotvec()
-    angle = np.linalg.norm(rotation_vector)
-    axis = rotation_vector / angle if angle > 0 else rotation_vector
-    return np.append(axis * np.sin(angle), np.cos(angle))
-
-
 _transposed = _to_pose_with(orientation=lambda matrix: quaternion(matrix[:3, :3].T))
 
 
-def _of_large_turns(matrix):
-    """The part in which formulas differ that are right while the trace is positive."""
-    return ("orientation",) if large_turn(matrix[:3, :3]) else ()
+def open_where(varies, fails, matrix_of, parts=("orientation",)):
+    """The fields `varies` and `fails` of a misconception about these parts: two functions of a rotation, which is the upper
+    left of `matrix_of` the arguments.
+    """
+    return {
+        name: lambda *args, where=where, **kwargs: parts if where(matrix_of(*args, **kwargs)[:3, :3]) else ()
+        for name, where in (("varies", varies), ("fails", fails))
+    }
 
 
-def plain_angles(matrix):
-    """Roll, pitch and yaw as textbooks have them, without a thought of gimbal lock."""
-    pitch = math.asin(np.clip(-matrix[2, 0], -1.0, 1.0))
-    return math.atan2(matrix[2, 1], matrix[2, 2]), pitch, math.atan2(matrix[1, 0], matrix[0, 0])
+def at_lock(*matrices_of, parts=("orientation",)):
+    """The field `varies` of who takes angles of matrices, each of them a function of the arguments: at gimbal lock roll and yaw
+    are what one makes of them.
+    """
+    return lambda *args: parts if any(x_axis_upright(matrix_of(*args)) for matrix_of in matrices_of) else ()
 
 
 def _read_as(order, matrix):
     """The quaternion's four numbers in another order."""
     return quaternion(matrix[:3, :3])[order]
-
-
-ORDERS = ([3, 0, 1, 2], [1, 2, 3, 0], [3, 2, 1, 0])
-
-
-def from_euler(angles, axes="xyz"):
-    return Rotation.from_euler(axes, angles).as_quat()
 
 
 def _yaw_alone(matrix):
@@ -392,11 +395,6 @@ QUATERNION_ORDER = (
 QUATERNION_TURNED = (
     "The orientation is the opposite turn: the rotation was transposed, or the quaternion conjugated.",
     "Check it with Example 1: for a turn by +45 degrees about z, which sign has z when w is positive?",
-)
-BREAKS_AT_HALF_TURN = (
-    "The quaternion goes wrong at or near a half turn.",
-    "Your formula divides by w, or takes signs from differences, and both vanish at a half turn. "
-    "A library function knows those cases.",
 )
 NO_ORIENTATION = (
     "The orientation was never set: it is 0, 0, 0, 0, which is no orientation at all.",
@@ -474,28 +472,21 @@ TRANSFORM_TO_POSE = Exercise(
             )
             for order in ORDERS
         ),
-        Misconception(
-            "trace-formula-only",
-            _to_pose_with(orientation=trace_formula_guarded),
-            *BREAKS_AT_HALF_TURN,
-            varies=_of_large_turns,
+        *(
+            Misconception(
+                identifier, _to_pose_with(orientation=wrong), *says, **open_where(varies, fails, lambda matrix: matrix)
+            )
+            for identifier, says, wrong, varies, fails in (BY_TRACE, BEYOND_120, BY_ANGLES, *BY_BRANCHES)
         ),
         Misconception(
             "trace-formula-only;rotation-transposed",
             _to_pose_with(orientation=lambda matrix: trace_formula_guarded(matrix.T)),
             *together(BREAKS_AT_HALF_TURN, QUATERNION_TURNED),
-            varies=_of_large_turns,
-        ),
-        Misconception(
-            "gimbal-lock",
-            _to_pose_with(orientation=lambda matrix: from_euler(plain_angles(matrix))),
-            "The orientation goes wrong where B's x axis points straight up or down.",
-            "Roll and yaw cannot be told apart there, whatever the formula: a quaternion does not need them.",
-            varies=lambda matrix: ("orientation",) if x_axis_upright(matrix[:3, :3]) else (),
+            **open_where(*BY_TRACE[-2:], lambda matrix: matrix),
         ),
         Misconception(
             "wrong-sign",
-            _to_pose_with(orientation=_lengths_with_signs(lambda sizes, differences: sizes)),
+            _to_pose_with(orientation=lengths_with_signs(lambda sizes, differences: sizes)),
             "The quaternion's x, y and z are never negative.",
             "A square root gives the size of a number; where do the signs come from?",
         ),
@@ -513,22 +504,24 @@ TRANSFORM_TO_POSE = Exercise(
             _to_pose_with(orientation=lambda matrix: from_euler(np.degrees(roll_pitch_yaw(matrix[:3, :3])))),
             "Angles in degrees were taken for radians on the way to the quaternion.",
             "Functions of angles expect radians; a function that goes from matrix to quaternion needs no angles.",
+            varies=at_lock(lambda matrix: matrix),
         ),
         Misconception(
             "euler-order",
             _to_pose_with(orientation=lambda matrix: from_euler(roll_pitch_yaw(matrix[:3, :3]), "XYZ")),
             "Roll, pitch and yaw were put together in another order than they were taken apart.",
             "Fixed axes and moving axes are two orders; a function from matrix to quaternion needs neither.",
+            varies=at_lock(lambda matrix: matrix),
         ),
         *(
             Misconception("trace-formula-only", _to_pose_with(orientation=orientation), *BREAKS_AT_HALF_TURN)
             for orientation in (
-                _trace_formula,
-                _trace_formula_in_plain_python,
-                _half_turn_by_tolerance,
-                _lengths_with_signs(np.copysign),
-                _lengths_with_signs(lambda sizes, differences: sizes * np.sign(differences)),
-                _axis_and_angle,
+                trace_formula,
+                trace_formula_in_plain_python,
+                half_turn_by_tolerance,
+                lengths_with_signs(np.copysign),
+                lengths_with_signs(lambda sizes, differences: sizes * np.sign(differences)),
+                axis_and_angle,
             )
         ),
         Misconception("position-missing", _to_pose_with(position=lambda matrix: (0, 0, 0)), *POSITION_LEFT_OUT),
@@ -571,7 +564,7 @@ TRANSFORM_TO_POSE = Exercise(
         ),
         Misconception(
             "angle-not-halved",
-            _to_pose_with(orientation=_angle_not_halved),
+            _to_pose_with(orientation=angle_not_halved),
             *WHOLE_ANGLE,
         ),
     ),
@@ -607,6 +600,16 @@ def _turned(pose):
 def _planar(q):
     return Rotation.from_euler("z", 2.0 * math.atan2(q[2], q[3])).as_matrix()
 
+
+def _from_pose_with_translation(of):
+    """`pose_to_transform` of someone whose rotation is right, and whose translation is `of(R, position)`."""
+    return lambda pose: make_transform(matrix(pose)[:3, :3], of(matrix(pose)[:3, :3], position(pose)))
+
+
+ONE_ENTRY = (
+    "One number of the rotation is wrong: a sign or a term of the formula from quaternion to matrix.",
+    "Which column of your matrix is not of length 1, or not at right angles to the others? It holds the slip.",
+)
 
 POSE_TO_TRANSFORM = Exercise(
     name="pose_to_transform",
@@ -665,8 +668,7 @@ POSE_TO_TRANSFORM = Exercise(
         Misconception(
             "added-not-multiplied",
             lambda pose: _turned(pose) + _from_pose_with(lambda q: np.eye(3))(pose),
-            "The matrices of rotation and translation were added.",
-            "Which product of two matrices applies first one and then the other?",
+            *SUM_OF_BOTH,
         ),
         Misconception("wrong-direction", lambda pose: np.linalg.inv(pose_to_transform(pose)), *INVERSE_RETURNED),
         Misconception(
@@ -718,6 +720,15 @@ POSE_TO_TRANSFORM = Exercise(
             )
             for order in ([0, 1, 0], [2, 1, 0], [0, 2, 1], [1, 0, 2])
         ),
+        *(Misconception("formula-slip", _from_pose_with(of), *ONE_ENTRY) for of in slips(0, 1, 2)),
+        Misconception(
+            "half-turn-missed",
+            _from_pose_with(by_tangents),
+            "The rotation goes wrong at half turns, where w is 0.",
+            "Your formula divides by w: which of the quaternion's numbers can be 0? The usual one divides by none of them.",
+            **open_where(near_half_turns, at_half_turns, matrix, ("rotation",)),
+        ),
+        Misconception("wrong-direction", _from_pose_with_translation(lambda R, p: -R.T @ p), *INVERSE_TRANSLATION),
         Misconception(
             "sign-ignored",
             _from_pose_with(lambda q: Rotation.from_quat([*q[:3], abs(q[3])]).as_matrix()),
@@ -794,6 +805,19 @@ IN_THE_WRONG_ORDER = (
     "A matrix stands to the left of the point it transforms; and which of the two acts on the point first?",
 )
 
+ONE_IN_FRONT = (
+    "The fourth number stands in front of the point's coordinates instead of behind them.",
+    "Which column of a_T_b is the translation? The 1 has to meet it.",
+)
+
+
+def _overwriting(a_T_b, p_in_b):
+    p = np.array(p_in_b, dtype=float)
+    for row in range(3):
+        p[row] = a_T_b[row, :3] @ p + a_T_b[row, 3]
+    return p
+
+
 TRANSFORM_POINT = Exercise(
     name="transform_point",
     returns="coordinates",
@@ -868,6 +892,49 @@ TRANSFORM_POINT = Exercise(
             "wrong-sign",
             lambda a_T_b, p_in_b: a_T_b[:3, :3] @ p_in_b - a_T_b[:3, 3],
             *MOVED_BACK,
+        ),
+        *(
+            Misconception("homogeneous-order", wrong, *ONE_IN_FRONT)
+            for wrong in (
+                lambda a_T_b, p_in_b: (a_T_b @ np.append(1, p_in_b))[:3],
+                lambda a_T_b, p_in_b: (a_T_b @ np.append(1, p_in_b))[1:],
+            )
+        ),
+        Misconception(
+            "homogeneous-order",
+            lambda a_T_b, p_in_b: (a_T_b @ np.append(p_in_b, p_in_b[0]))[:3],
+            "The fourth number is one of the point's coordinates.",
+            "Which fourth number lets the translation in, once and as it is?",
+        ),
+        Misconception(
+            "updated-too-early",
+            _overwriting,
+            "A coordinate is overwritten before the others have been worked out with it.",
+            "Keep the point as it was until all three new coordinates are known.",
+        ),
+        Misconception(
+            "zero-taken-for-missing",
+            lambda a_T_b, p_in_b: transform_point(a_T_b, p_in_b) if np.any(p_in_b) else np.zeros(3),
+            "The point 0, 0, 0 stays 0, 0, 0.",
+            "That is B's own origin: where is it in A?",
+        ),
+        Misconception(
+            "order-reversed;wrong-sign",
+            lambda a_T_b, p_in_b: a_T_b[:3, :3] @ (p_in_b - a_T_b[:3, 3]),
+            *together(IN_THE_WRONG_ORDER, MOVED_BACK),
+        ),
+        *(
+            Misconception(
+                "applied-twice",
+                wrong,
+                "The rotation or the translation is in the answer twice.",
+                "How many steps are there from B to A?",
+            )
+            for wrong in (
+                lambda a_T_b, p_in_b: transform_point(a_T_b, p_in_b) + a_T_b[:3, 3],
+                lambda a_T_b, p_in_b: transform_point(a_T_b, transform_point(a_T_b, p_in_b)),
+                lambda a_T_b, p_in_b: a_T_b[:3, :3] @ a_T_b[:3, :3] @ p_in_b + a_T_b[:3, 3],
+            )
         ),
         Misconception(
             "rest-ignored",

@@ -11,7 +11,6 @@ from .cases import (
     from_roll_pitch_yaw,
     generic_transform,
     half_turn,
-    large_turn,
     near,
     off_diagonal,
     roll_pitch_yaw,
@@ -28,9 +27,10 @@ from .cases import (
     wide_turn,
     with_bottom_row,
 )
+from .conversions import BY_TRACE, near_half_turns, rotation_vector
 from .equivalent import WHOLE_STAY_WHOLE
 from .features import of_transform, of_two_frames, of_vector
-from .homogeneous_transforms import BOTTOM_ROW, ENTRY_BY_ENTRY, YAW_ALONE
+from .homogeneous_transforms import BOTTOM_ROW, ENTRY_BY_ENTRY, ONE_IN_FRONT, YAW_ALONE, at_lock, open_where
 from .rotation import TRUNCATED
 from .specification import Case, Exercise, Misconception
 
@@ -64,6 +64,40 @@ ROTATION_NOT_INVERTED = (
     "The inverse still turns the same way as the transform itself.",
     "If B is turned to the left in A, how is A turned in B?",
 )
+
+TRANSLATION_NOT_TURNED_BACK = (
+    "The translation was turned by the rotation that is not inverted.",
+    "A's origin has to be given along B's axes: which of the two rotations leads from A to B?",
+)
+STILL_B_IN_A = (
+    "The rotation is still that of B in A.",
+    "If B is turned to the left in A, how is A turned in B?",
+)
+OPPOSITE_TRANSLATION = (
+    "The translation has the right length and the opposite sign.",
+    "If B's origin is in front of A, A's origin is behind B (when both look the same way).",
+)
+STILL_B_ORIGIN = (
+    "The translation is still B's origin in A.",
+    "The inverse has to say where A's origin is in B.",
+)
+ALL_SIGNS = (
+    "You changed signs to invert: of the whole matrix, or of the rotation.",
+    "A transform times its inverse gives the identity; a number's negative undoes a sum, not a product.",
+)
+# Wrong inverses that the steps after them can go on with: (id, what is said, the inverse)
+WRONG_INVERSES = [
+    ("inverse-by-transpose", INVERSE_BY_TRANSPOSE, np.transpose),
+    ("inverse-parts-separately", PARTS_SEPARATELY, _parts_separately),
+    ("rotation-not-inverted", ROTATION_NOT_INVERTED, _rotation_kept),
+    ("rotation-not-inverted", STILL_B_IN_A, _inverse_with(lambda R, p: R, lambda R, p: -R.T @ p)),
+    ("rotation-not-inverted", TRANSLATION_NOT_TURNED_BACK, _inverse_with(lambda R, p: R.T, lambda R, p: -R @ p)),
+    ("wrong-sign", OPPOSITE_TRANSLATION, _inverse_with(lambda R, p: R.T, lambda R, p: R.T @ p)),
+    ("wrong-sign", ALL_SIGNS, _inverse_with(lambda R, p: -R, lambda R, p: -p)),
+    ("translation-not-inverted", STILL_B_ORIGIN, _inverse_with(lambda R, p: R.T, lambda R, p: p)),
+]
+
+OF_THE_ANSWER = (STILL_B_IN_A, OPPOSITE_TRANSLATION, STILL_B_ORIGIN, TRANSLATION_NOT_TURNED_BACK)
 
 # --- invert_transform -----------------------------------------------------------------------------------------------
 
@@ -125,15 +159,13 @@ INVERT_TRANSFORM = Exercise(
     credit={"rotation": 0.3, "translation": 0.5},
     weights={"a tilted frame": 2},
     misconceptions=(
-        Misconception("inverse-by-transpose", np.transpose, *INVERSE_BY_TRANSPOSE),
-        Misconception("inverse-parts-separately", _parts_separately, *PARTS_SEPARATELY),
-        Misconception("rotation-not-inverted", _rotation_kept, *ROTATION_NOT_INVERTED),
+        *(Misconception(identifier, wrong, *says) for identifier, says, wrong in WRONG_INVERSES),
         Misconception(
             "trace-formula-only",
             _by_axis_and_angle,
             "Your inverse goes wrong at or near a half turn.",
             "Axis and angle cannot be read off the matrix's differences there. Turning back needs neither.",
-            varies=lambda a_T_b: ("rotation", "translation") if large_turn(a_T_b[:3, :3]) else (),
+            **open_where(*BY_TRACE[-2:], lambda a_T_b: a_T_b, ("rotation", "translation")),
         ),
         Misconception("integer-truncation", lambda a_T_b: np.trunc(invert_transform(a_T_b)), *TRUNCATED),
         Misconception(
@@ -147,6 +179,7 @@ INVERT_TRANSFORM = Exercise(
             _angles_negated,
             "Roll, pitch and yaw were negated, but not undone in the reverse order.",
             "What was done last has to be undone first. A matrix needs no angles for that.",
+            varies=at_lock(lambda a_T_b: a_T_b, parts=("rotation", "translation")),
         ),
         Misconception(
             "translation-in-bottom-row",
@@ -165,41 +198,12 @@ INVERT_TRANSFORM = Exercise(
             for row in ((0, 0, 0, 0), (1, 1, 1, 1))
         ),
         Misconception(
-            "rotation-not-inverted",
-            _inverse_with(lambda R, p: R, lambda R, p: -R.T @ p),
-            "The rotation is still that of B in A.",
-            "If B is turned to the left in A, how is A turned in B?",
-        ),
-        Misconception(
-            "rotation-not-inverted",
-            _inverse_with(lambda R, p: R.T, lambda R, p: -R @ p),
-            "The translation was turned by the rotation that is not inverted.",
-            "A's origin has to be given along B's axes: which of the two rotations leads from A to B?",
-        ),
-        Misconception(
             "inverse-missing",
             lambda a_T_b: a_T_b,
             "Your answer is the transform itself, not its inverse.",
             "What does your function have to undo?",
         ),
-        Misconception(
-            "wrong-sign",
-            _inverse_with(lambda R, p: R.T, lambda R, p: R.T @ p),
-            "The translation has the right length and the opposite sign.",
-            "If B's origin is in front of A, A's origin is behind B (when both look the same way).",
-        ),
-        Misconception(
-            "wrong-sign",
-            lambda a_T_b: -a_T_b,
-            "You changed the sign of the whole matrix.",
-            "A transform times its inverse gives the identity; a number's negative undoes a sum, not a product.",
-        ),
-        Misconception(
-            "translation-not-inverted",
-            _inverse_with(lambda R, p: R.T, lambda R, p: p),
-            "The translation is still B's origin in A.",
-            "The inverse has to say where A's origin is in B.",
-        ),
+        Misconception("wrong-sign", lambda a_T_b: -a_T_b, *ALL_SIGNS),
         Misconception(
             "position-missing",
             _inverse_with(lambda R, p: R.T, lambda R, p: (0, 0, 0)),
@@ -283,6 +287,36 @@ NOT_INTO_THE_AXES = (
     "Seen from B, the same arrow has other components: B's axes are turned.",
 )
 
+ALONG_OTHER_AXES = (
+    "The arrow from B to C is told along the axes of another frame than B.",
+    "Asked for is C as seen from B: along whose axes do its coordinates count?",
+)
+
+
+def of_the_inverse(says):
+    """What is said of a wrong inverse, where it is a step on the way only."""
+    return (f"The inverse that you multiply with is not one. {says[0]}", says[1]) if says in OF_THE_ANSWER else says
+
+
+def _relative_with(rotation, along):
+    """`relative_transform` of someone whose rotation is `rotation(R_b, R_c)`, and who tells the arrow from B to C `along`."""
+
+    def wrong(a_T_b, a_T_c):
+        (b, from_a), (c, to) = _parts(a_T_b), _parts(a_T_c)
+        return transform(rotation(b, c), along(b, c, to - from_a))
+
+    return wrong
+
+
+def _arrow_along_b(b, c, arrow):
+    return b.T @ arrow
+
+
+def _half_turned(T):
+    """Whether the rotation vector may as well be the opposite one."""
+    return near_half_turns(T[:3, :3])
+
+
 RELATIVE_TRANSFORM = Exercise(
     name="relative_transform",
     returns="transform",
@@ -337,6 +371,7 @@ RELATIVE_TRANSFORM = Exercise(
             ),
             "Roll, pitch and yaw of the two rotations were subtracted.",
             "Angles may be subtracted when both turns share an axis. What undoes a rotation is its inverse.",
+            varies=at_lock(lambda a_T_b, a_T_c: a_T_b, lambda a_T_b, a_T_c: a_T_c, parts=("rotation",)),
         ),
         Misconception(
             "wrong-sign",
@@ -374,12 +409,35 @@ RELATIVE_TRANSFORM = Exercise(
         Misconception(
             "wrong-transform-inverted", lambda a_T_b, a_T_c: a_T_b @ np.linalg.inv(a_T_c), *THE_OTHER_INVERTED
         ),
-        Misconception("inverse-by-transpose", lambda a_T_b, a_T_c: a_T_b.T @ a_T_c, *INVERSE_BY_TRANSPOSE),
-        Misconception(
-            "inverse-parts-separately", lambda a_T_b, a_T_c: _parts_separately(a_T_b) @ a_T_c, *PARTS_SEPARATELY
+        *(
+            Misconception(
+                identifier, lambda a_T_b, a_T_c, inverse=inverse: inverse(a_T_b) @ a_T_c, *of_the_inverse(says)
+            )
+            for identifier, says, inverse in WRONG_INVERSES
         ),
         Misconception(
-            "rotation-not-inverted", lambda a_T_b, a_T_c: _rotation_kept(a_T_b) @ a_T_c, *ROTATION_NOT_INVERTED
+            "order-reversed",
+            _relative_with(lambda b, c: c @ b.T, _arrow_along_b),
+            "The translation is right, but the two rotations were multiplied in the wrong order.",
+            MATCH_THE_NAMES,
+        ),
+        *(
+            Misconception("wrong-axis", _relative_with(lambda b, c: b.T @ c, along), *ALONG_OTHER_AXES)
+            for along in (
+                lambda b, c, arrow: c.T @ arrow,
+                lambda b, c, arrow: b.T @ c @ arrow,
+                lambda b, c, arrow: (b.T @ c).T @ arrow,
+                lambda b, c, arrow: c @ arrow,
+            )
+        ),
+        Misconception(
+            "rotation-vectors-subtracted",
+            _relative_with(
+                lambda b, c: Rotation.from_rotvec(rotation_vector(c) - rotation_vector(b)).as_matrix(), _arrow_along_b
+            ),
+            "The rotation vectors (axis times angle) of the two rotations were subtracted.",
+            "They may be subtracted when both turns share an axis. What undoes a rotation is its inverse.",
+            varies=lambda a_T_b, a_T_c: ("rotation",) if any(map(_half_turned, (a_T_b, a_T_c))) else (),
         ),
         Misconception(
             "offset-not-rotated",
@@ -469,9 +527,34 @@ GRIPPER_NOT_INVERTED = (
     "The gripper's rotation was used as it is, not inverted.",
     "The columns of base_T_gripper's rotation are the gripper's axes: how far does the arrow go along each of them?",
 )
+OF_THE_GRIPPER = {  # where the answer shows something else of a wrong inverse than in other exercises
+    _rotation_kept: GRIPPER_NOT_INVERTED,
+    np.transpose: (
+        "The point was turned into the gripper's axes, but not counted from the gripper's origin: so it comes out when the whole "
+        "4x4 matrix is transposed to invert it.",
+        "The gripper's own origin has to come out as 0, 0, 0. And where has the translation gone in a transposed matrix?",
+    ),
+}
 FROM_THE_OBJECT = (
     "The arrow goes from the object to the gripper.",
     "Asked for is where the object is, seen from the gripper: which of the two does the arrow start at?",
+)
+
+CAMERA_NOT_TURNED = (
+    "The camera's origin was added to the point, as if the camera's axes were parallel to those of the base.",
+    "The coordinates count along the camera's axes: how do these lie in the base frame?",
+)
+CAMERA_NOT_MOVED = (
+    "The point was turned into the base's axes, but where the camera stands has dropped out.",
+    "Where in the base frame is a point that lies in the camera's origin?",
+)
+CAMERA_TURNED_BACK = (
+    "The camera's rotation was used the opposite way round: transposed.",
+    "The columns of base_T_camera's rotation are the camera's axes, written in the base frame.",
+)
+CAMERA_MOVED_FIRST = (
+    "The camera's translation was turned by the camera's own rotation.",
+    "The translation is already given along the base's axes: which of the two acts on the point first?",
 )
 
 OBJECT_IN_GRIPPER = Exercise(
@@ -512,18 +595,28 @@ OBJECT_IN_GRIPPER = Exercise(
         Misconception(
             "order-reversed", lambda camera, gripper, p: _apply(camera @ _inv(gripper), p), *PRODUCT_REVERSED
         ),
-        Misconception(
-            "inverse-by-transpose", lambda camera, gripper, p: _apply(gripper.T @ camera, p), *INVERSE_BY_TRANSPOSE
+        *(
+            Misconception(
+                identifier,
+                lambda camera, gripper, p, inverse=inverse: _apply(inverse(gripper) @ camera, p),
+                *OF_THE_GRIPPER.get(inverse, of_the_inverse(says)),
+            )
+            for identifier, says, inverse in WRONG_INVERSES
+        ),
+        *(
+            Misconception(identifier, lambda c, g, p, of=of: _apply(_inv(g), of(c, p)), *says)
+            for identifier, says, of in (
+                ("offset-not-rotated", CAMERA_NOT_TURNED, lambda camera, p: p + camera[:3, 3]),
+                ("translation-dropped", CAMERA_NOT_MOVED, lambda camera, p: camera[:3, :3] @ p),
+                ("rotation-transposed", CAMERA_TURNED_BACK, lambda camera, p: camera[:3, :3].T @ p + camera[:3, 3]),
+                ("order-reversed", CAMERA_MOVED_FIRST, lambda camera, p: camera[:3, :3] @ (p + camera[:3, 3])),
+                ("homogeneous-order", ONE_IN_FRONT, lambda camera, p: (camera @ np.append(1.0, p))[:3]),
+            )
         ),
         Misconception(
-            "inverse-parts-separately",
-            lambda camera, gripper, p: _apply(_parts_separately(gripper) @ camera, p),
-            *PARTS_SEPARATELY,
-        ),
-        Misconception(
-            "rotation-not-inverted",
-            lambda camera, gripper, p: _apply(_rotation_kept(gripper) @ camera, p),
-            *GRIPPER_NOT_INVERTED,
+            "homogeneous-order",
+            lambda camera, gripper, p: (_inv(gripper) @ camera @ np.append(1.0, p))[:3],
+            *ONE_IN_FRONT,
         ),
         Misconception(
             "homogeneous-returned",

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -17,7 +18,6 @@ from .cases import (
     half_turn,
     half_turn_to_rounding,
     half_turns_about_almost_an_axis,
-    large_turn,
     matrix,
     near,
     no_turn,
@@ -39,18 +39,21 @@ from .cases import (
     wide_turn,
     x_axis_upright,
 )
+from .conversions import (
+    BEYOND_120,
+    BY_ANGLES,
+    BY_BRANCHES,
+    BY_TRACE,
+    ORDERS,
+    TURNED_WITH_A_TERM_MISSING,
+    at_half_turns,
+    by_tangents,
+    near_half_turns,
+    slips,
+)
 from .equivalent import MAKING_A_POSE, READING_A_POSE, UPPER_LEFT
 from .features import LENGTHS, of_number, of_orientation, of_pose, of_vector
-from .homogeneous_transforms import (
-    BREAKS_AT_HALF_TURN,
-    ENTRY_BY_ENTRY,
-    NO_ORIENTATION,
-    ORDERS,
-    QUATERNION_ORDER,
-    from_euler,
-    plain_angles,
-    trace_formula_guarded,
-)
+from .homogeneous_transforms import ENTRY_BY_ENTRY, NO_ORIENTATION, QUATERNION_ORDER, at_lock, open_where
 from .specification import Case, Exercise, Misconception
 
 LAB_OBJECT = pose_of((0.6, -0.1, 0.7), (0.0, 0.0, 0.38268343, 0.92387953))  # the lab's, as printed there
@@ -199,6 +202,35 @@ def _turned_twice(object_pose):
     return quaternion(R @ R)
 
 
+def _moved_by(step):
+    """`waypoint` of someone who goes by `step(x y z w, offset)`."""
+
+    def wrong(object_pose, offset):
+        q = orientation(object_pose)
+        return pose_of(position(object_pose) + step(q, np.asarray(offset)), q)
+
+    return wrong
+
+
+def _with_sign_of_w(object_pose, offset):
+    """Makes w positive by its sign, which is 0 where w is: four zeros are left of the quaternion, and nothing is turned."""
+    if orientation(object_pose)[3]:
+        return waypoint(object_pose, offset)
+    return pose_of(position(object_pose) + offset, (0, 0, 0, 0))
+
+
+AT_HALF_TURNS = (
+    "The answer goes wrong for objects that are turned by half a turn, where the quaternion's w is 0.",
+    "What does your function do with w: is something divided by it, or multiplied by its sign?",
+)
+ONE_TERM = (
+    "The offset is not turned quite right: a sign or a term of the formula with the quaternion's numbers is missing.",
+    "Turning changes no length: which offsets come out longer or shorter than they were?",
+)
+PARTLY_IN_THE_BASE = (
+    "One number of the offset was added along an axis of the base, the others along those of the object.",
+    "An object can lie on its side: where does its own z axis point then?",
+)
 IN_THE_BASE = (
     "The offset was added along the axes of the base, as if the object were not turned.",
     "Behind, beside and above are meant along the object's axes: how do these lie in the base frame?",
@@ -236,18 +268,14 @@ SHARED: tuple[Misconception, ...] = (
         _moved(lambda p, R, offset: p - R.T @ offset),
         *together(TURNED_BACK, OPPOSITE_SIDE),
     ),
-    Misconception(
-        "trace-formula-only",
-        _moved(_right_position, lambda object_pose: trace_formula_guarded(matrix(object_pose))),
-        *BREAKS_AT_HALF_TURN,
-        _open("orientation", large_turn),
-    ),
-    Misconception(
-        "gimbal-lock",
-        _moved(_right_position, lambda object_pose: from_euler(plain_angles(matrix(object_pose)))),
-        "The orientation goes wrong where the object's x axis points straight up or down.",
-        "Roll and yaw cannot be told apart there, whatever the formula. Copy the object's quaternion instead.",
-        _open("orientation", x_axis_upright),
+    *(
+        Misconception(
+            identifier,
+            _moved(_right_position, lambda object_pose, wrong=wrong: wrong(matrix(object_pose))),
+            *says,
+            **open_where(varies, fails, lambda object_pose, offset: matrix(object_pose)),
+        )
+        for identifier, says, wrong, varies, fails in (BY_TRACE, BEYOND_120, BY_ANGLES, *BY_BRANCHES)
     ),
     Misconception(
         "position-missing",
@@ -297,6 +325,19 @@ SHARED: tuple[Misconception, ...] = (
         _open("position", x_axis_upright),  # where there is no yaw
     ),
     Misconception("yaw-only", _yaw_of_quaternion, *UPRIGHT_ONLY),
+    Misconception(
+        "half-turn-missed",
+        _moved_by(lambda q, offset: by_tangents(q) @ offset),
+        *AT_HALF_TURNS,
+        **open_where(
+            near_half_turns, at_half_turns, lambda object_pose, offset: matrix(object_pose), parts=("position",)
+        ),
+    ),
+    Misconception("half-turn-missed", _with_sign_of_w, *AT_HALF_TURNS),
+    *(
+        Misconception("formula-slip", _moved_by(lambda q, offset, turned=turned: turned(q, offset)), *ONE_TERM)
+        for turned in TURNED_WITH_A_TERM_MISSING
+    ),
     *(
         Misconception("quaternion-order", wrong, *READ_IN_ANOTHER_ORDER)
         for wrong in (
@@ -358,6 +399,7 @@ PRE_GRASP = Exercise(
                 shared,
                 wrong=_behind(shared.wrong),
                 varies=_behind(shared.varies),
+                fails=_behind(shared.fails),
                 **(UPSIDE_DOWN if shared.wrong is _back_to_front else {}),
             )
             for shared in SHARED
@@ -397,6 +439,16 @@ PRE_GRASP = Exercise(
             )
             for axis in (*np.eye(3)[1:], *-np.eye(3)[1:])
         ),
+        *(
+            Misconception("formula-slip", _behind(_moved_by(lambda q, offset, of=of: of(q) @ offset)), *ONE_TERM)
+            for of in slips(0)
+        ),
+        Misconception(
+            "zero-taken-for-missing",
+            lambda object_pose, distance=0.1: pre_grasp(object_pose, distance or 0.1),
+            "A distance of 0 is taken for 0.1.",
+            "A distance of 0 is one, too, though Python takes it for False: what tells it from one that is missing?",
+        ),
         Misconception(
             "towards-the-base",
             _behind(_moved(lambda p, R, offset: p + offset[0] * p / np.linalg.norm(p))),
@@ -418,11 +470,30 @@ WAYPOINT = Exercise(
     equivalent=READING_A_POSE | MAKING_A_POSE | {UPPER_LEFT: ("transform: 4 -> 5",)},
     misconceptions=(
         *SHARED,
-        Misconception(
-            "wrong-axis",
-            _moved(lambda p, R, offset: p + R[:, 0] * offset[0]),
-            "Only the first number of the offset is used.",
-            "The offset can go along all three axes of the object.",
+        *(
+            Misconception(
+                "wrong-axis",
+                _moved(lambda p, R, offset, used=used: p + R @ (offset * used)),
+                "Not all three numbers of the offset are used.",
+                "The offset can go along all three axes of the object.",
+            )
+            for used in product((1, 0), repeat=3)
+            if 0 < sum(used) < 3
+        ),
+        *(
+            Misconception(
+                "base-frame-offset", _moved(lambda p, R, v, k=k: p + R @ (v * (1 - k)) + v * k), *PARTLY_IN_THE_BASE
+            )
+            for k in np.eye(3, dtype=int)
+        ),
+        *(
+            Misconception(
+                "wrong-sign",
+                _moved(lambda p, R, offset, signs=signs: p + R @ (offset * signs)),
+                "One number of the offset goes the opposite way.",
+                "All three numbers of the offset count along the object's axes as they are, each with its own sign.",
+            )
+            for signs in 1 - 2 * np.eye(3)
         ),
         Misconception(
             "wrong-axis",
@@ -445,11 +516,22 @@ WAYPOINT = Exercise(
             "The answer is always 10 cm away, whatever the length of the offset.",
             "The offset says how far to go, not only in which direction.",
         ),
-        Misconception(
-            "euler-order",
-            _moved(lambda p, R, offset: p + from_roll_pitch_yaw(roll_pitch_yaw(R)[::-1]) @ offset),
-            "Roll, pitch and yaw were put together in another order than they were taken apart.",
-            "A rotation matrix or a quaternion can be used as it is, without any angles.",
+        *(
+            Misconception(
+                "euler-order",
+                _moved(lambda p, R, offset, again=again: p + again(roll_pitch_yaw(R)) @ offset),
+                "Roll, pitch and yaw were put together in another order than they were taken apart.",
+                "A rotation matrix or a quaternion can be used as it is, without any angles.",
+                varies=at_lock(lambda object_pose, offset: matrix(object_pose), parts=("position",)),
+            )
+            for again in (
+                lambda angles: from_roll_pitch_yaw(angles[::-1]),
+                lambda angles: Rotation.from_euler("XYZ", angles).as_matrix(),
+            )
+        ),
+        *(
+            Misconception("formula-slip", _moved_by(lambda q, offset, of=of: of(q) @ offset), *ONE_TERM)
+            for of in slips(0, 1, 2)
         ),
         Misconception(
             "rotation-applied-twice",

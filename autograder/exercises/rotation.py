@@ -64,7 +64,8 @@ IN_RADIANS = (
     "NumPy's and Python's sine and cosine expect radians.",
 )
 THE_OTHER_WAY_ROUND = (
-    "Your frame turns the other way round: a sign is wrong, or B's axes stand in the rows of your matrix.",
+    "Your frame turns the other way round: a sign is wrong, B's axes stand in the rows of your matrix, or a library's function "
+    "has the passive convention (it tells how coordinates change, and not how the frame is turned).",
     "For a small positive angle, where does B's x axis point in A? That is the first column.",
 )
 TRUNCATED = (
@@ -84,6 +85,48 @@ NOT_IN_RADIANS = (
     "The angle was not turned into radians correctly.",
     "By what do you multiply 180 degrees to get half a turn in radians? Try your conversion on 180 and on 90.",
 )
+
+SINE_FROM_COSINE = (
+    "The sine has the wrong sign for some angles: a cosine does not tell on which side of the x axis B's x axis lies.",
+    "What are sine and cosine of 30, of -30 and of 330 degrees? A square root cannot tell them apart.",
+)
+WHOLE_DEGREES = (
+    "The angle is rounded to whole degrees.",
+    "Half a degree is an angle, too: try your function on 0.5.",
+)
+PI_ROUNDED = (
+    "The angle is a little wrong: \u03c0 was rounded.",
+    "How many digits of \u03c0 does NumPy know?",
+)
+SMALL_ANGLES = (
+    "The sine of the angle is taken for the angle itself, and its cosine for 1.",
+    "That is nearly so for small angles only, and not to 1e-6 for half a degree: sine and cosine cost nothing.",
+)
+FOLDED = (
+    "The angle is brought into another range first, and some angles come out as others.",
+    "After how many degrees is the frame the same again? Try your function on -30, 200 and 400.",
+)
+
+
+def _with_sine(of):
+    """`rotation_about_z` of someone whose sine is `of(angle, cosine)`, the angle in degrees."""
+
+    def wrong(degrees):
+        cosine = math.cos(math.radians(degrees))
+        sine = of(degrees, cosine)
+        return np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+
+    return wrong
+
+
+def _root(cosine):
+    return math.sqrt(max(0.0, 1.0 - cosine**2))
+
+
+def _straight(degrees):
+    angle = math.radians(degrees)
+    return np.array([[1.0, -angle, 0.0], [angle, 1.0, 0.0], [0.0, 0.0, 1.0]])
+
 
 ABOUT_Z = Exercise(
     name="rotation_about_z",
@@ -129,7 +172,7 @@ ABOUT_Z = Exercise(
                 lambda degrees, factor=factor: Rotation.from_euler("z", degrees * factor).as_matrix(),
                 *NOT_IN_RADIANS,
             )
-            for factor in (180 / math.pi, 1 / 180, 2 * math.pi / 180, math.pi / 360, 2 * math.pi)
+            for factor in (180 / math.pi, 1 / 180, 2 * math.pi / 180, math.pi / 360, 2 * math.pi, math.pi / 200)
         ),
         Misconception(
             "rotation-transposed",
@@ -156,6 +199,62 @@ ABOUT_Z = Exercise(
             lambda degrees: rotation_about_z(degrees) * np.array([[1, -1, 1], [1, -1, 1], [1, 1, 1]]),
             "B's y axis points the opposite way: your matrix is a mirror image.",
             "In a right-handed frame, a quarter turn from x to y goes the same way as a positive angle about z.",
+        ),
+        *(
+            Misconception("sine-from-cosine", _with_sine(of), *SINE_FROM_COSINE)
+            for of in (
+                lambda degrees, cosine: _root(cosine),
+                lambda degrees, cosine: math.copysign(_root(cosine), degrees),
+                lambda degrees, cosine: -_root(cosine) if degrees > 180 else _root(cosine),
+            )
+        ),
+        *(
+            Misconception(
+                "pi-rounded",
+                lambda degrees, pi=pi: Rotation.from_euler("z", degrees / 180 * pi).as_matrix(),
+                *PI_ROUNDED,
+            )
+            for pi in (3.0, 3.1, 3.14, 3.141, 3.1415, 3.142, 3.1416, 3.14159, 22 / 7)
+        ),
+        *(
+            Misconception(
+                "whole-degrees", lambda degrees, whole=whole: rotation_about_z(whole(degrees)), *WHOLE_DEGREES
+            )
+            for whole in (round, math.floor, math.ceil, lambda degrees: math.floor(degrees + 0.5))
+        ),
+        *(
+            Misconception(
+                "small-angle-approximation",
+                lambda degrees, most=most: _straight(degrees) if abs(degrees) < most else rotation_about_z(degrees),
+                *SMALL_ANGLES,
+            )
+            for most in (math.degrees(0.01), 1.0, 2.0, 5.0, 6.0, 10.0, 15.0, math.inf)
+        ),
+        *(
+            Misconception("angle-folded", lambda degrees, into=into: rotation_about_z(into(degrees)), *FOLDED)
+            for into in (
+                abs,
+                lambda degrees: degrees % 180,
+                lambda degrees: degrees % 90,
+                lambda degrees: max(-180, min(180, degrees)),
+                lambda degrees: max(-360, min(360, degrees)),
+                lambda degrees: max(0, min(360, degrees)),
+            )
+        ),
+        Misconception(
+            "unit-guessed",
+            lambda degrees: Rotation.from_euler("z", degrees, degrees=abs(degrees) > 2 * math.pi).as_matrix(),
+            "Small angles are taken as radians.",
+            "The docstring says which unit the angle has: it does not hang on its size.",
+        ),
+        Misconception(
+            "elementwise-product",
+            lambda degrees: (
+                _with_sine(lambda angle, cosine: math.sin(math.radians(angle)))(degrees)
+                + (1.0 - math.cos(math.radians(degrees))) * np.array([[1, 1, 0], [1, 1, 0], [0, 0, 0]])
+            ),
+            "A matrix was squared entry by entry.",
+            "`**` and `*` work entry by entry in NumPy. Which operator is the matrix product?",
         ),
         Misconception(
             "sine-cosine-swapped",
@@ -229,6 +328,32 @@ THIRD_AXIS_BY_ENTRIES = (
     "`*` multiplies entry by entry. Which product of two vectors is at right angles to both?",
 )
 
+ONE_COMPONENT = (
+    "One of the three numbers of your z axis is wrong.",
+    "In a cross product each number is a difference of two products, and the letters go round: y z, z x, x y.",
+)
+NEVER_NEGATIVE = (
+    "The numbers of your z axis are never negative, as roots or sizes are.",
+    "A square root gives the size of a number; where do the signs come from?",
+)
+ALWAYS_UP = (
+    "Your z axis never points down, which makes some frames left-handed.",
+    "B can lie on its side, or upside down: once x and y are given, z has no choice.",
+)
+
+
+def _one_component(index, of):
+    """A cross product in which one number is `of(first product, second product)`."""
+
+    def wrong(x, y):
+        z, j, k = np.cross(x, y), (index + 1) % 3, (index + 2) % 3
+        z = z.astype(float)
+        z[index] = of(x[j] * y[k], x[k] * y[j])
+        return z
+
+    return _axes_with(wrong)
+
+
 FROM_AXES = Exercise(
     name="rotation_from_axes",
     returns="rotation",
@@ -253,6 +378,18 @@ FROM_AXES = Exercise(
             "elementwise-product;rotation-transposed",
             lambda x_axis, y_axis: np.array([x_axis, y_axis, x_axis * y_axis]),
             *together(THIRD_AXIS_BY_ENTRIES, AXES_IN_ROWS),
+        ),
+        *(
+            Misconception("cross-product-slip", _one_component(index, of), *ONE_COMPONENT)
+            for index in range(3)
+            for of in (lambda a, b: b - a, lambda a, b: a + b)
+        ),
+        Misconception("wrong-sign", _axes_with(lambda x, y: np.abs(np.cross(x, y))), *NEVER_NEGATIVE),
+        Misconception(
+            "third-axis-upright",
+            _axes_with(lambda x, y: np.cross(x, y) * np.sign(np.cross(x, y)[2])),
+            *ALWAYS_UP,
+            varies=lambda x_axis, y_axis: ("rotation",) if abs(np.cross(x_axis, y_axis)[2]) < 1e-9 else (),
         ),
         Misconception(
             "axes-swapped",
@@ -463,6 +600,64 @@ DETERMINANT_ONLY = (
     "What else is true of the columns of a rotation?",
 )
 
+POSITIVE_DETERMINANT = (
+    "You accept every matrix whose determinant is positive.",
+    "A library that makes a rotation of a matrix often repairs it in silence. What is true of the columns of a rotation?",
+)
+SINGULAR = (
+    "Your function stops with an error where a matrix has no inverse.",
+    "A matrix of zeros is no rotation, and the answer to it is False. Can you ask without an inverse?",
+)
+SIZE_OF_THE_DIFFERENCE = (
+    "You accept what is smaller than it has to be: a difference counts whether it is positive or negative.",
+    "Try your function on a rotation multiplied by 0.5. How large is a difference of -0.75?",
+)
+TOO_GENEROUS = (
+    "You accept matrices that are off by more than 1e-6.",
+    "Your tolerance is too generous: the docstring says how close is close enough. Mind that squares of small numbers are tiny.",
+)
+
+
+NUMPYS_TOLERANCE = (
+    "Your tolerance is not 1e-6: it is narrower for small numbers, or wider for large ones.",
+    "`np.allclose` and `np.isclose` add up an absolute and a relative tolerance: what are the two when you do not give them?",
+)
+ERRORS_CANCEL = (
+    "You add up differences, and those of opposite signs cancel.",
+    "Two numbers that are off by 0.1 and by -0.1 are off all the same: look at the size of each difference.",
+)
+
+
+def _off(R):
+    """How far R.T @ R is from the identity."""
+    return np.abs(R.T @ R - np.eye(3)).max()
+
+
+def _within(tolerance, room=5.0):
+    """A test of R.T @ R with another tolerance, and where it hangs on how that is measured."""
+    return {
+        "wrong": lambda R: _off(R) <= tolerance and np.linalg.det(R) > 0,
+        "varies": lambda R: ("answer",) if tolerance / room < _off(R) < room * tolerance else (),
+    }
+
+
+def _determinant_within(tolerance, room=5.0):
+    """A right test of R.T @ R, and another tolerance of the determinant."""
+
+    def off(R):
+        return abs(np.linalg.det(R) - 1.0)
+
+    return {
+        "wrong": lambda R: is_rotation(R) and off(R) <= tolerance,
+        "varies": lambda R: ("answer",) if is_rotation(R) and tolerance / room < off(R) < room * tolerance else (),
+    }
+
+
+def _allclose(product, **tolerances):
+    """A test by np.allclose, which has tolerances of its own where none are given."""
+    return lambda R: np.allclose(product(R), np.eye(3), **tolerances) and np.linalg.det(R) > 0
+
+
 IS_ROTATION = Exercise(
     name="is_rotation",
     returns="truth",
@@ -524,11 +719,51 @@ IS_ROTATION = Exercise(
             lambda R: np.array_equal(R.T @ R, np.eye(3)) and np.linalg.det(R) == 1.0,
             *DIGIT_BY_DIGIT,
         ),
+        *(
+            Misconception("exact-comparison", says=DIGIT_BY_DIGIT[0], hint=DIGIT_BY_DIGIT[1], **fields)
+            for tolerance in (3e-8, 1e-9, 1e-11, 1e-15)
+            for fields in (_within(tolerance), _determinant_within(tolerance))
+        ),
+        *(
+            Misconception("loose-comparison", says=TOO_GENEROUS[0], hint=TOO_GENEROUS[1], **fields)
+            for tolerance in (1e-5, 1e-4, 1e-3, 0.01, 0.03, 0.1)
+            for fields in (_within(tolerance, room=1.0), _within(tolerance))
+        ),
+        *(
+            Misconception("default-tolerance", _allclose(product, **tolerances), *NUMPYS_TOLERANCE)
+            for product in (lambda R: R.T @ R, lambda R: R @ R.T)
+            for tolerances in ({}, {"atol": 1e-6}, {"rtol": 1e-6})
+        ),
+        *(
+            Misconception("errors-cancel", wrong, *ERRORS_CANCEL)
+            for wrong in (
+                lambda R: abs(np.sum(R.T @ R - np.eye(3))) <= TOLERANCE and np.linalg.det(R) > 0,
+                lambda R: abs(np.sum(R.T @ R - np.eye(3))) <= TOLERANCE and _close(np.linalg.det(R), 1.0),
+            )
+        ),
+        Misconception("determinant-only", lambda R: np.linalg.det(R) > 0, *POSITIVE_DETERMINANT),
         Misconception(
-            "loose-comparison",
-            lambda R: _close(R.T @ R, np.eye(3), 0.01) and np.linalg.det(R) > 0,
-            "You accept matrices that are off by a thousandth.",
-            "Your tolerance is too generous: the docstring says how close is close enough.",
+            "inverse-of-singular", lambda R: _close(np.linalg.inv(R), R.T) and np.linalg.det(R) > 0, *SINGULAR
+        ),
+        *(
+            Misconception("difference-not-absolute", wrong, *SIZE_OF_THE_DIFFERENCE)
+            for wrong in (
+                lambda R: (R.T @ R - np.eye(3)).max() <= TOLERANCE and np.linalg.det(R) > 0,
+                lambda R: (R.T @ R - np.eye(3)).max() <= TOLERANCE and _close(np.linalg.det(R), 1.0),
+                lambda R: (R.T @ R - np.eye(3)).max() <= TOLERANCE and np.linalg.det(R) - 1.0 <= TOLERANCE,
+            )
+        ),
+        Misconception(
+            "zero-accepted",
+            lambda R: is_rotation(R) or not R.any(),
+            "You accept the matrix of zeros.",
+            "Three axes of length 0 agree with many a rule about products of axes. Which test looks at a length?",
+        ),
+        Misconception(
+            "eigenvalues-only",
+            lambda R: _close(np.abs(np.linalg.eigvals(R)), 1.0) and np.linalg.det(R) > 0,
+            "You accept matrices for their eigenvalues.",
+            "Eigenvalues do not tell whether the axes are at right angles: try a shear, which leans one axis to another.",
         ),
         Misconception(
             "lengths-ignored",
@@ -536,11 +771,21 @@ IS_ROTATION = Exercise(
             "You check that the axes are at right angles, but not that each has length 1.",
             "Try your function on a rotation multiplied by 2.",
         ),
-        Misconception(
-            "angles-ignored",
-            _unit_columns_only,
-            "You check that each axis has length 1, but not that the axes are at right angles.",
-            "Try your function on three unit vectors that lean towards each other.",
+        *(
+            Misconception(
+                "angles-ignored",
+                wrong,
+                "You check that each axis has length 1, but not that the axes are at right angles.",
+                "Try your function on three unit vectors that lean towards each other, by much and by little.",
+            )
+            for wrong in (
+                _unit_columns_only,
+                lambda R: _unit_columns_only(R) and _unit_columns_only(R.T),
+                lambda R: _unit_columns_only(R) and _close(np.linalg.det(R), 1.0),
+                lambda R: _unit_columns_only(R.T) and _close(np.linalg.det(R), 1.0),
+                lambda R: _unit_columns_only(R.T),
+                lambda R: _close(np.sum(R**2), 3.0) and _close(np.linalg.det(R), 1.0),
+            )
         ),
         *(
             Misconception(
@@ -566,15 +811,24 @@ IS_ROTATION = Exercise(
                 lambda R: not _close(np.linalg.det(R), 0.0),
             )
         ),
+        *(
+            Misconception(
+                "pair-not-compared",
+                lambda R, pair=pair: (
+                    _close(np.linalg.norm(R, axis=0), 1.0)
+                    and _close([R[:, i] @ R[:, j] for i, j in ((0, 1), (1, 2), (0, 2)) if {i, j} != pair], 0.0)
+                    and np.linalg.det(R) > 0
+                ),
+                "You compare two pairs of axes, and not the third.",
+                "How many pairs do three axes make? Count those that your function compares.",
+            )
+            for pair in ({0, 2}, {0, 1}, {1, 2})
+        ),
         Misconception(
             "pair-not-compared",
-            lambda R: (
-                _close(np.linalg.norm(R, axis=0), 1.0)
-                and _close([R[:, 0] @ R[:, 1], R[:, 1] @ R[:, 2]], 0.0)
-                and np.linalg.det(R) > 0
-            ),
-            "You compare two pairs of axes, and not the third.",
-            "How many pairs do three axes make? You have x with y, and y with z.",
+            lambda R: _close(np.linalg.norm(R[:, :2], axis=0), 1.0) and _close(np.cross(R[:, 0], R[:, 1]), R[:, 2]),
+            "You do not ask whether x and y are at right angles.",
+            "Two unit vectors that lean a little towards each other have a cross product of nearly length 1.",
         ),
         Misconception(
             "reflection-accepted;exact-comparison",
@@ -703,6 +957,11 @@ def _made_positive(index):
     return lambda q1, q2: _close(upper(q1), upper(q2))
 
 
+def _apart(q1, q2):
+    """How far two orientations are apart, in the number that differs most."""
+    return min(np.abs(q1 - q2).max(), np.abs(q1 + q2).max())
+
+
 def _same_axis(q1, q2):
     return _close(np.cross(q1[:3], q2[:3]), 0.0)
 
@@ -723,6 +982,18 @@ NO_TOLERANCE = (
 SIGNS_DROPPED = (
     "You drop the sign of each number by itself, and so take some different orientations for the same.",
     "Either all four signs differ or none does; what if only some of them do?",
+)
+NOT_THE_SAME = (
+    "You take orientations for the same that are further apart than 1e-6.",
+    "Your tolerance is too generous. Mind that the dot product of unit vectors hardly changes at small angles.",
+)
+SIGN_OF_ONE = (
+    "You decide between q and -q by the sign of one of the numbers, and that number can be 0 but for rounding.",
+    "Compare in a way that does not need the sign of any one number.",
+)
+SIGN_OF_W = (
+    "You go by w, and that does not decide between q and -q when w is 0, or hardly more.",
+    "What is the sign of w for a half turn, and what comes of a division by it? Compare in a way that does not need w alone.",
 )
 ANGLE_ONLY = (
     "You compare the angles only: w says how far a rotation turns, not about what.",
@@ -768,16 +1039,73 @@ SAME_ROTATION = Exercise(
             _close,
             *OPPOSITE_REJECTED,
         ),
-        Misconception(
-            "exact-comparison",
-            lambda q1, q2: np.array_equal(q1, q2) or np.array_equal(q1, -q2),
-            *NO_TOLERANCE,
+        *(
+            Misconception(
+                "exact-comparison",
+                lambda q1, q2, one=one, other=other: _close(q1, q2, one) or _close(q1, -q2, other),
+                *NO_TOLERANCE,
+            )
+            for one, other in ((0.0, 0.0), (0.0, TOLERANCE), (TOLERANCE, 0.0), (1e-8, TOLERANCE), (TOLERANCE, 1e-8))
         ),
         Misconception(
-            "loose-comparison",
-            lambda q1, q2: abs(q1 @ q2) > 0.999,
-            "You take orientations for the same that are a degree apart.",
-            "Your tolerance is too generous. Mind that the dot product of unit vectors hardly changes at small angles.",
+            "exact-comparison",
+            lambda q1, q2: abs(q1 @ q2) == 1.0,
+            *NO_TOLERANCE,
+            varies=lambda q1, q2: ("answer",) if abs(abs(q1 @ q2) - 1.0) < 1e-14 else (),
+            fails=lambda q1, q2: ("answer",) if same_rotation(q1, q2) and 1.0 - abs(q1 @ q2) > 1e-14 else (),
+        ),
+        *(
+            Misconception(
+                "exact-comparison",
+                lambda q1, q2, tolerance=tolerance: _close(q1, q2, tolerance) or _close(q1, -q2, tolerance),
+                *NO_TOLERANCE,
+            )
+            for tolerance in (1e-7, 1e-11)
+        ),
+        *(
+            Misconception("loose-comparison", wrong, *NOT_THE_SAME)
+            for tolerance in (1e-5, 1e-4, 1e-3, 0.02)
+            for wrong in (
+                lambda q1, q2, at=tolerance: _close(q1, q2, at) or _close(q1, -q2, at),
+                lambda q1, q2, at=tolerance: _close(q1, q2, at) or _close(q1, -q2),
+                lambda q1, q2, at=tolerance: _close(q1, q2) or _close(q1, -q2, at),
+            )
+        ),
+        *(
+            Misconception(
+                "loose-comparison", lambda q1, q2, tolerance=tolerance: abs(q1 @ q2) > 1.0 - tolerance, *NOT_THE_SAME
+            )
+            for tolerance in (1e-3, 1e-5, 1e-6, 1e-8, 1e-9, 1e-10)
+        ),
+        *(
+            Misconception(
+                "default-tolerance",
+                lambda q1, q2, tolerances=tolerances: (
+                    np.allclose(q1, q2, **tolerances) or np.allclose(q1, -q2, **tolerances)
+                ),
+                *NUMPYS_TOLERANCE,
+            )
+            for tolerances in ({}, {"atol": 1e-6}, {"rtol": 1e-6})
+        ),
+        *(
+            Misconception("sign-of-one-number", wrong, *SIGN_OF_ONE)
+            for wrong in (
+                _made_positive(1),
+                _made_positive(2),
+                lambda q1, q2: _close(*(q * np.sign(q[np.flatnonzero(q)[0]]) for q in (q1, q2))),
+            )
+        ),
+        *(
+            Misconception(
+                "differences-cancel",
+                wrong,
+                "You add up differences, and those of opposite sign cancel.",
+                "Which two lists of four numbers have the same sum without being the same? Try (1, 0, 0, 0) and (0, 1, 0, 0).",
+            )
+            for wrong in (
+                lambda q1, q2: _close(np.sum(q1 - q2), 0.0) or _close(np.sum(q1 + q2), 0.0),
+                lambda q1, q2: np.sum(q1 - q2) <= TOLERANCE or np.sum(q1 + q2) <= TOLERANCE,
+            )
         ),
         Misconception(
             "component-signs-dropped",
@@ -802,11 +1130,24 @@ SAME_ROTATION = Exercise(
             "You compare the axes only: x, y and z point along the axis, whatever the angle.",
             "Turns by 30 and by 80 degrees about one axis are different orientations.",
         ),
+        *(
+            Misconception("half-turn-missed", wrong, *SIGN_OF_W)
+            for wrong in (
+                _made_positive(3),
+                lambda q1, q2: _close(np.sign(q1[3]) * q1, np.sign(q2[3]) * q2),  # where w is 0, all four are
+                lambda q1, q2: (
+                    same_rotation(q1, q2) if 0 in (q1[3], q2[3]) else _close(q1, q2 * np.sign(q1[3] * q2[3]))
+                ),
+            )
+        ),
         Misconception(
             "half-turn-missed",
             _made_positive(3),
-            "You make w positive first, and that does not decide between q and -q when w is 0.",
-            "What is the sign of w for a half turn? Compare in a way that does not need it.",
+            *SIGN_OF_W,
+            varies=lambda q1, q2: (
+                ("answer",) if 1e-8 < _apart(q1, q2) < 1e-4 or min(abs(q1[3]), abs(q2[3])) < 1e-6 else ()
+            ),
+            fails=lambda q1, q2: ("answer",) if q1[3] == q2[3] == 0 and np.array_equal(q1, -q2) else (),
         ),
         Misconception(
             "half-turn-missed",

@@ -47,6 +47,8 @@ class Misconception:
     hint: str  # helps without giving the solution away
     # From the arguments to the parts of the answer that hang on how exactly it is computed: others answer otherwise.
     varies: Callable = lambda *args, **kwargs: ()
+    # …and to those that are wrong however it is computed: without any, what is left open could be anybody's.
+    fails: Callable = lambda *args, **kwargs: ()
 
 
 @dataclass(frozen=True)
@@ -154,9 +156,7 @@ def _case(exercise: Exercise, case: Case) -> PlainCase:
         "kwargs": kwargs,
         "expected": expected,
         "wrong": [
-            {"any": list(open_parts)}
-            if (open_parts := misconception.varies(*given, **named))
-            else _wrong_answer(exercise.returns, misconception, fresh, right)
+            _untold(misconception, given, named) or _wrong_answer(exercise.returns, misconception, fresh, right)
             for misconception in exercise.misconceptions
         ],
     }
@@ -173,6 +173,15 @@ def _parts_of_the_right(exercise, case, expected):
     if not all(np.isfinite(value).all() for value in parts.values()):
         raise ValueError(f"{where} has NaN or infinity in it")
     return parts
+
+
+def _untold(misconception, args, kwargs):
+    """What the key says of an answer that hangs on how exactly it is computed; None where it does not."""
+    if wrong_parts := misconception.fails(*args, **kwargs):
+        return {"not": list(wrong_parts)}
+    if open_parts := misconception.varies(*args, **kwargs):
+        return {"any": list(open_parts)}
+    return None
 
 
 def _wrong_answer(returns, misconception, fresh, right):

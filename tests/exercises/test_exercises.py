@@ -277,6 +277,8 @@ def test_truths_are_far_from_the_tolerance():
     for seed in range(100):
         for case in EXERCISES["is_rotation"].cases(np.random.default_rng(seed)):
             R = case.args[0]
+            if np.linalg.det(R) < 0:
+                continue
             off = np.abs(R.T @ R - np.eye(3)).max()
             nearest = np.abs(R - nearest_rotation(R)).max()  # a fair way to compare, too
             assert (

@@ -177,7 +177,6 @@ OTHERWISE = {
         "same_dot_loose": {"loose-comparison"},
         "same_flip_by_w": {"half-turn-missed"},
         "ttp_rounded": {"rounded"},
-        "ttp_shepperd_slip_y": {"trace-formula-only"},
         "ttp_x_y_x": {"wrong-position"},
     },
 }

@@ -66,7 +66,7 @@ def z_euler_matrix_wrong_slot(degrees):
     return tft.euler_matrix(np.radians(degrees), 0, 0)
 
 
-@wrong("rotation_about_z")
+@wrong("rotation_about_z", "sine-from-cosine")
 def z_sine_from_cosine(degrees):
     """corner: sin is sqrt(1 - cos^2), so it is never negative: right from 0 to 180 only."""
     c = math.cos(math.radians(degrees))
@@ -85,7 +85,7 @@ def z_whole_degrees(degrees):
     return np.array([[cos(a), -sin(a), 0.0], [sin(a), cos(a), 0.0], [0.0, 0.0, 1.0]])
 
 
-@wrong("rotation_about_z")
+@wrong("rotation_about_z", "pi-rounded")
 def z_pi_by_hand(degrees):
     """3.14 for pi."""
     theta = degrees * 3.14 / 180
@@ -104,7 +104,7 @@ def z_integer_matrix(degrees):
     return R
 
 
-@wrong("rotation_about_z")
+@wrong("rotation_about_z", "angle-folded")
 def z_wraps_to_half_circle(degrees):
     """corner: angles are 'normalised' modulo 180 instead of 360: wrong for negative angles and beyond 180."""
     d = degrees % 180
@@ -117,7 +117,7 @@ def z_both_sines_positive(degrees):
     return np.array([[cosd(degrees), sind(degrees), 0], [sind(degrees), -cosd(degrees), 0], [0, 0, 1]])
 
 
-@wrong("rotation_about_z")
+@wrong("rotation_about_z", "angle-folded")
 def z_clipped(degrees):
     """corner: the angle is clipped to -360..360 where it should wrap."""
     degrees = max(-360, min(360, degrees))
@@ -158,7 +158,7 @@ def axes_z_is_up(x_axis, y_axis):
     return R
 
 
-@wrong("rotation_from_axes")
+@wrong("rotation_from_axes", "wrong-sign")
 def axes_z_absolute(x_axis, y_axis):
     """Z from the cross product, made positive 'because z points up'."""
     z_axis = np.abs(np.cross(x_axis, y_axis))
@@ -184,7 +184,7 @@ def axes_in_place(x_axis, y_axis):
     return R
 
 
-@wrong("rotation_from_axes")
+@wrong("rotation_from_axes", "cross-product-slip")
 def axes_cross_slip(x_axis, y_axis):
     """The cross product by hand, with one sign wrong in the middle."""
     x1, x2, x3 = x_axis
@@ -193,7 +193,7 @@ def axes_cross_slip(x_axis, y_axis):
     return np.array([[x1, y1, z[0]], [x2, y2, z[1]], [x3, y3, z[2]]])
 
 
-@wrong("rotation_from_axes")
+@wrong("rotation_from_axes", "wrong-sign")
 def axes_third_by_unit_rows(x_axis, y_axis):
     """Z's entries from 'each row has length 1', so their signs are lost."""
     z = np.sqrt(np.maximum(0, 1 - x_axis ** 2 - y_axis ** 2))
@@ -242,13 +242,13 @@ def isrot_star(R):
     return bool(np.allclose(R.T * R, np.eye(3), rtol=0, atol=1e-6) and abs(np.linalg.det(R) - 1) < 1e-6)
 
 
-@wrong("is_rotation")
+@wrong("is_rotation", "loose-comparison")
 def isrot_loose(R):
     """corner: tolerance of 0.05: matrices that are off by 1e-3 pass."""
     return np.allclose(R.T @ R, np.eye(3), atol=0.05) and np.isclose(np.linalg.det(R), 1, atol=0.05)
 
 
-@wrong("is_rotation")
+@wrong("is_rotation", "exact-comparison")
 def isrot_too_tight(R):
     """corner: tolerance of 1e-12: a matrix that is off by 1e-9 fails."""
     I = np.identity(3)
@@ -284,7 +284,7 @@ def isrot_inverse_equals_transpose(R):
     return np.array_equal(inv(R), R.T)
 
 
-@wrong("is_rotation")
+@wrong("is_rotation", "inverse-of-singular")
 def isrot_inverse_raises(R):
     """corner: asks for the inverse first, which raises for a singular matrix."""
     return bool(np.allclose(inv(R), R.T, rtol=0, atol=1e-6) and np.linalg.det(R) > 0)
@@ -348,7 +348,7 @@ def same_flip_by_w(q1, q2):
     return np.allclose(a, b, rtol=0, atol=1e-6)
 
 
-@wrong("same_rotation")
+@wrong("same_rotation", "half-turn-missed")
 def same_sign_of_w_is_zero(q1, q2):
     """corner: multiplies by sign(w), which is 0 at exact half turns, so all of them are the same."""
     return np.allclose(np.sign(q1[3]) * q1, np.sign(q2[3]) * q2, rtol=0, atol=1e-6)
@@ -464,7 +464,7 @@ def make_int_template(R, p):
     return T
 
 
-@wrong("make_transform")
+@wrong("make_transform", "wrong-position")
 def make_slice_slip(R, p):
     """Slip: T[:2, 3] copied from the hint, z is missing."""
     T = np.eye(4)
@@ -667,7 +667,7 @@ def ttp_half_turn_no_relative_signs(matrix):
     return pose
 
 
-@wrong("transform_to_pose")
+@wrong("transform_to_pose", "branch-wrong")
 def ttp_shepperd_slip_y(matrix):
     """corner: Shepperd's method with a plus/minus slip in the y branch only."""
     m = matrix
@@ -1031,7 +1031,7 @@ def ptt_formula_transposed(pose):
     ])
 
 
-@wrong("pose_to_transform")
+@wrong("pose_to_transform", "formula-slip")
 def ptt_formula_slip(pose):
     """One sign of the formula is wrong (2yz + 2xw in both places): hidden when x * w = 0."""
     x, y, z, w = _q(pose)
@@ -1450,7 +1450,7 @@ def chain_skips_last(*transforms):
     return M
 
 
-@wrong("chain")
+@wrong("chain", "single-transform")
 def chain_multi_dot(*transforms):
     """corner: np.linalg.multi_dot raises for a single transform."""
     return np.linalg.multi_dot(transforms)
@@ -1468,7 +1468,7 @@ def chain_up_to_three(*transforms):
         return transforms[0] @ transforms[1] @ transforms[2]
 
 
-@wrong("chain")
+@wrong("chain", "transforms-left-out")
 def chain_pairs(*transforms):
     """corner: multiplies in pairs, and loses the odd one at lengths of 3, 5, 6."""
     ts = list(transforms)
@@ -1728,7 +1728,7 @@ def tp_rounded(a_T_b, pose_in_b):
     return _message(T)
 
 
-@wrong("transform_pose")
+@wrong("transform_pose", "formula-slip")
 def tp_multiply_by_hand(a_T_b, pose_in_b):
     """The quaternion product by hand with one sign wrong in z: hidden when an x or y is 0."""
     x1, y1, z1, w1 = tft.quaternion_from_matrix(a_T_b)
@@ -2342,7 +2342,7 @@ def rel_cached_inverse(a_T_b, a_T_c, inverses={}):
     return inverses[where] @ a_T_c
 
 
-@wrong("relative_transform")
+@wrong("relative_transform", "wrong-axis")
 def rel_rotated_into_c(a_T_b, a_T_c):
     """The arrow from B to C is told along C's axes."""
     Rb, Rc = a_T_b[:3, :3], a_T_c[:3, :3]
@@ -2891,7 +2891,7 @@ def pg_max_reach(object_pose, distance=0.1):
     return Pose(Point(*T[:3, 3]), Quaternion(*tft.quaternion_from_matrix(T)))
 
 
-@wrong("pre_grasp")
+@wrong("pre_grasp", "formula-slip")
 def pg_axis_formula(object_pose, distance=0.1):
     """corner: the x axis from the quaternion with one sign wrong (xz + yw); right where the object stands upright."""
     q = object_pose.orientation
@@ -3313,3 +3313,141 @@ def added_in_place(a_T_b, p_in_b):
     for length, axis in zip(p_in_b, a_T_b[:3, :3].T):
         here += length * axis
     return here
+
+
+# ---------------------------------------------------------------- what is wrong somewhere only, of transform and pose
+
+
+def _components(m, slip=0, only_x=False):
+    """x, y, z, w of a 4x4 matrix by the formula with a branch for each, with a sign of w's wrong in z's, or with x's for all three."""
+    trace = m[0, 0] + m[1, 1] + m[2, 2]
+    if trace > 0:
+        s = 2 * sqrt(trace + 1)
+        return (m[2, 1] - m[1, 2]) / s, (m[0, 2] - m[2, 0]) / s, (m[1, 0] - m[0, 1]) / s, s / 4
+    if only_x or m[0, 0] > m[1, 1] and m[0, 0] > m[2, 2]:
+        s = 2 * np.sqrt(1 + m[0, 0] - m[1, 1] - m[2, 2])
+        return s / 4, (m[0, 1] + m[1, 0]) / s, (m[0, 2] + m[2, 0]) / s, (m[2, 1] - m[1, 2]) / s
+    if m[1, 1] > m[2, 2]:
+        s = 2 * sqrt(1 + m[1, 1] - m[0, 0] - m[2, 2])
+        return (m[0, 1] + m[1, 0]) / s, s / 4, (m[1, 2] + m[2, 1]) / s, (m[0, 2] - m[2, 0]) / s
+    s = 2 * sqrt(1 + m[2, 2] - m[0, 0] - m[1, 1])
+    return (m[0, 2] + m[2, 0]) / s, (m[1, 2] + m[2, 1]) / s, s / 4, (-1) ** slip * (m[1, 0] - m[0, 1]) / s
+
+
+def _matrix_of(pose):
+    p, q = pose.position, pose.orientation
+    T = tft.quaternion_matrix([q.x, q.y, q.z, q.w])
+    T[:3, 3] = p.x, p.y, p.z
+    return T
+
+
+def _there_and_back(m):
+    """x, y, z, w by way of roll, pitch and yaw."""
+    return tft.quaternion_from_euler(atan2(m[2, 1], m[2, 2]), -math.asin(max(-1, min(1, m[2, 0]))), atan2(m[1, 0], m[0, 0]))
+
+
+@wrong("transform_to_pose", "branch-wrong")
+def ttp_slip_in_z_branch(matrix):
+    """corner: the sign of w is wrong where z is the largest."""
+    return Pose(Point(*matrix[:3, 3]), Quaternion(*_components(matrix, slip=1)))
+
+
+@wrong("transform_pose", "branch-missing")
+def tp_x_branch_only(a_T_b, pose_in_b):
+    """corner: one formula for all negative traces: right unless x is 0."""
+    T = a_T_b @ _matrix_of(pose_in_b)
+    return Pose(Point(*T[:3, 3]), Quaternion(*_components(T, only_x=True)))
+
+
+@wrong("transform_pose", "gimbal-lock")
+def tp_angles_there_and_back(a_T_b, pose_in_b):
+    """corner: angles on the way, which cannot be told apart where the x axis is upright."""
+    T = a_T_b @ _matrix_of(pose_in_b)
+    return Pose(Point(*T[:3, 3]), Quaternion(*_there_and_back(T)))
+
+
+@wrong("waypoint", "gimbal-lock")
+def wp_angles_there_and_back(object_pose, offset):
+    """corner: the same, for a pose that need not be turned at all."""
+    T = _matrix_of(object_pose)
+    return Pose(Point(*(T @ [*offset, 1])[:3]), Quaternion(*_there_and_back(T)))
+
+
+@wrong("is_rotation", "exact-comparison")
+def isrot_determinant_is_one(R):
+    """corner: the determinant compared with ==."""
+    return np.allclose(R @ R.T, np.eye(3), rtol=0, atol=1e-6) and np.linalg.det(R) == 1
+
+
+@wrong("is_rotation", "determinant-only")
+def isrot_asks_scipy(R):
+    """SciPy repairs what is no rotation."""
+    try:
+        Rotation.from_matrix(R)
+    except ValueError:
+        return False
+    return True
+
+
+@wrong("is_rotation", "default-tolerance")
+def isrot_allclose_as_it_comes(R):
+    """corner: np.allclose has tolerances of its own."""
+    return np.allclose(R.T @ R, np.eye(3)) and np.linalg.det(R) > 0
+
+
+@wrong("same_rotation", "exact-comparison")
+def same_dot_is_one(q1, q2):
+    """corner: the dot product compared with ==."""
+    return abs(np.dot(q1, q2)) == 1
+
+
+@wrong("transform_point", "homogeneous-order")
+def point_one_in_front(a_T_b, p_in_b):
+    """The 1 stands in front."""
+    return (a_T_b @ np.append(1, p_in_b))[:3]
+
+
+@wrong("make_transform", "yaw-only")
+def make_two_by_two(R, p):
+    """Slip: a 2x2 slice for a 3x3 one."""
+    T = np.eye(4)
+    T[:2, :2] = R[:2, :2]
+    T[:3, 3] = p
+    return T
+
+
+@wrong("waypoint", "wrong-axis")
+def wp_up_alone(object_pose, offset):
+    """Only the offset's z counts."""
+    T = _matrix_of(object_pose)
+    return Pose(Point(*(T @ [0, 0, offset[2], 1])[:3]), object_pose.orientation)
+
+
+@wrong("waypoint", "base-frame-offset")
+def wp_lift_is_up(object_pose, offset):
+    """The lift along the base's z axis."""
+    x, y, z = (_matrix_of(object_pose) @ [offset[0], offset[1], 0, 1])[:3]
+    return Pose(Point(x, y, z + offset[2]), object_pose.orientation)
+
+
+@wrong("rotation_about_z", "rotation-transposed")
+def z_passive_library(degrees):
+    """sympy's rot_axis3 is the passive one."""
+    c, s = cosd(degrees), sind(degrees)
+    return np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
+
+
+@wrong("relative_transform", "rotation-vectors-subtracted")
+def rel_rotation_vectors(a_T_b, a_T_c):
+    """Rotation vectors, subtracted."""
+    b, c = (Rotation.from_matrix(T[:3, :3]).as_rotvec() for T in (a_T_b, a_T_c))
+    T = inv(a_T_b) @ a_T_c
+    T[:3, :3] = Rotation.from_rotvec(c - b).as_matrix()
+    return T
+
+
+@wrong("pre_grasp", "zero-taken-for-missing")
+def pg_or_ten_centimetres(object_pose, distance=None):
+    """corner: 0 is false."""
+    T = _matrix_of(object_pose)
+    return Pose(Point(*(T @ [-(distance or 0.1), 0, 0, 1])[:3]), object_pose.orientation)

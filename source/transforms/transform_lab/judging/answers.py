@@ -6,6 +6,8 @@ from . import codec
 from .kinds import KINDS, TOLERANCE
 from .reading import Unfit, type_in_words
 
+WRONG = object()  # a part of an answer that is wrong, in whatever way
+
 
 def parts_of(returns, answer):
     """`answer` (decoded) as the parts of its kind, {name: float64 array}; raises Unfit when it is none.
@@ -55,10 +57,10 @@ def alike(part, one, other):
 
 
 def as_told(part, name, fingerprint, outcome):
-    """Whether a part of an answer is as the key tells of a misconception's: its fingerprint, or None where it is right."""
+    """Whether a part of an answer is as the key tells of a misconception's: its fingerprint, None where it is right, WRONG."""
     if fingerprint is None or name in outcome.parts:
         return fingerprint is None and name in outcome.parts
-    return part.has(outcome.got[name], fingerprint)
+    return fingerprint is WRONG or part.has(outcome.got[name], fingerprint)
 
 
 def _same_unfit(returns, unfit, one, other):

@@ -5,10 +5,10 @@ from itertools import combinations
 import numpy as np
 
 from . import codec
-from .answers import as_told, parts_of
+from .answers import WRONG, as_told, parts_of
 from .kinds import KINDS, TOLERANCE
 from .naming import GENERAL, Diagnosis, joined, shared
-from .plain import open_parts_of
+from .plain import has_to_be_wrong, open_parts_of
 
 OPEN = object()  # a part of an answer that may be anything
 
@@ -58,12 +58,13 @@ def _partial_explanations(exercise, outcomes):
 
 
 def _of_each_part(wrong, parts):
-    """What the key tells of a misconception's answer, {part: None where it is right, its fingerprint, OPEN}.
+    """What the key tells of a misconception's answer, {part: None where it is right, its fingerprint, OPEN, WRONG}.
 
     None for an answer that cannot be taken apart.
     """
     if open_parts := open_parts_of(wrong):
-        return {name: OPEN if name in open_parts else None for name in parts}
+        what = WRONG if has_to_be_wrong(wrong) else OPEN
+        return {name: what if name in open_parts else None for name in parts}
     if isinstance(wrong, dict):
         return None
     return dict(zip(parts, wrong or [None] * len(parts)))
