@@ -135,21 +135,20 @@ def _general(name, exercise, replies, outcomes, tell):
     others_right = 0 < len(problems) < len(outcomes) and all(one.answered or one.problem for one in outcomes)
     where = "" if times == len(replies) else f" in {times} of {len(replies)} cases"
     told = tell(what)
+    what_came = f": {told}" if told else "."
+    if not identifier and others_right and all(_broke_down(outcome) for outcome in outcomes if outcome.problem):
+        return general(
+            "breaks-down", f"Your answer is right wherever its formula works; it breaks down{where}{what_came}"
+        )
     if not identifier:
-        advised = advice(told, name, exercise["parameters"])
-        says = f"Your function raised an error{where}{f': {told}' if told else '.'}"
-        if others_right and all(_broke_down(outcome) for outcome in outcomes if outcome.problem):
-            says = (
-                f"Your answer is right wherever its formula works; it breaks down{where}{f': {told}' if told else '.'}"
-            )
-            return general("breaks-down", says)
-        return Diagnosis((), says, advised)
-    says, hint = GENERAL[identifier]
+        others = ", and is right in all others" if others_right else ""
+        says = f"Your function raised an error{where}{others}{what_came}"
+        return Diagnosis((), says, advice(told, name, exercise["parameters"]))
+    says = f"{GENERAL[identifier][0].removesuffix('.')}{where}"
     if identifier == "not-finite":
-        says = f"{says[:-1]}{where}; all others are right." if others_right else f"{says[:-1]}{where}."
-        return general(identifier, says)
+        return general(identifier, f"{says}; all others are right." if others_right else f"{says}.")
     if identifier != "returned-none":
-        return general(identifier, f"{says[:-1]}: {told}." if told else says)
+        return general(identifier, f"{says}: {told}." if told else f"{says}.")
     if any(reply.printed for reply in replies):
-        return general(identifier, "Your function printed something, but returned None.", PRINT_IS_NOT_RETURN)
-    return general(identifier)
+        return general(identifier, f"Your function printed something, but returned None{where}.", PRINT_IS_NOT_RETURN)
+    return general(identifier, f"{says}.")
