@@ -76,6 +76,7 @@ SMALL_TOGETHER = decades(-6, -1)  # metres and radians
 SHORT_OF_HALF = {"0": (0.0, 2e-8)} | decades(-7, -1)  # radians; a cosine knows an angle near π to 1e-8
 COMPONENTS = {"0": (0.0, ROUNDING)} | decades(-6, -1)
 SIGNS = {"-": (-math.inf, -ROUNDING), "0": (-1e-15, 1e-15), "+": (ROUNDING, math.inf)}
+DEGREES = {"0": (0.0, 0.0)} | decades(-4, 3)
 TYPES = {"fractions": (0, 0), "integers": (1, 1)}
 
 
@@ -88,6 +89,26 @@ OFF = {
     "+1e-6": (1e-6, 1e-5),
 }
 FAR_OFF = decades(-5, -2)
+
+
+# What is special of arguments, by the bands of a feature that they lie in: the table of the features' bands is the key
+SPECIAL = (
+    ("integers", (TYPES,), {"integers"}),
+    ("half turn", (SHORT_OF_HALF,), {"0", *list(SHORT_OF_HALF)[1:7]}),
+    ("small", (LENGTHS, TURNS, DEGREES), {f"1e{decade}" for decade in range(-6, -1)}),
+    ("far", (LENGTHS,), {"1e1", "1e2", "1e3"}),
+)
+
+
+def special_of(features, arguments):
+    """What is special of arguments, {parameter: value}; see transform_lab.judging.places."""
+    return [
+        what
+        for what, tables, names in SPECIAL
+        if any(
+            feature.bands_of(arguments) & names for feature in features if any(feature.bands is each for each in tables)
+        )
+    ]
 
 
 def of_differences(parameters, names, differences):

@@ -1,7 +1,7 @@
 """The exercises of notebook 1: rotation matrices, and the two quaternions of one orientation."""
 
+import itertools
 import math
-from itertools import product
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -23,7 +23,7 @@ from .cases import (
     whole,
 )
 from .equivalent import IN_SINGLE_PRECISION, LISTS, MINUS_TRUE, NEAR_TOLERANCE, NUMPYS_NUMBERS, NUMPYS_TRUTH, SAME_SIZE
-from .features import SIGNS, Feature, decades, of_axes, of_differences, of_number, type_of_numbers
+from .features import DEGREES, SIGNS, Feature, of_axes, of_differences, of_number, type_of_numbers
 from .specification import Case, Exercise, Misconception
 
 # --- rotation_about_z -----------------------------------------------------------------------------------------------
@@ -37,10 +37,10 @@ def about_z_cases(rng):
     small = [math.degrees(size(rng, decade)) for decade in range(-6, -2)]  # which is what the sine is in radians
     families = {
         "a quarter, half or three-quarter turn": [90, 180, 270.0, -90, 0],
-        "a positive angle below 90 degrees": [30, 45.0, 60, rng.uniform(2, 9), rng.uniform(10, 85)],
+        "a positive angle below 90 degrees": [30, 45.0, 60, rng.uniform(2, 6), rng.uniform(10, 85)],
         "a negative angle": [-30, -45.0, -rng.uniform(50, 85), -rng.uniform(95, 175)],
         "an angle between 90 and 360 degrees": [120, 210.0, rng.uniform(95, 175), rng.uniform(275, 355)],
-        "more than a full turn": [405, -750.0, rng.uniform(370, 440), _between_singles(size(rng, 3)), -size(rng, 3)],
+        "more than a full turn": [405, -750.0, rng.uniform(370, 440), _between_singles(7200 + rng.uniform(200, 260)), -6120 - rng.uniform(10, 80)],
         "a fraction of a degree": [0.5, -0.25, rng.uniform(0.01, 0.1), *(sign * angle for sign in (1, -1) for angle in small)],
         "a quarter turn, or a fraction of a degree more": [90, -90.0, *(90 + angle for angle in small)],
     }  # fmt: skip
@@ -134,7 +134,7 @@ ABOUT_Z = Exercise(
     answer="a_R_b",
     reference=rotation_about_z,
     cases=about_z_cases,
-    features=of_number("degrees", {"0": (0.0, 0.0)} | decades(-4, 3)),
+    features=of_number("degrees", DEGREES),
     equivalent={
         LISTS: (
             "rotation_about_z: np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) -> [[c, -s, 0], [s, c, 0], [0, 0, 1]]",
@@ -291,12 +291,13 @@ def rotation_from_axes(x_axis, y_axis):
 
 
 def from_axes_cases(rng):
+    upside_down = np.diag([1.0, -1.0, -1.0])
     families = {
         "a frame turned by quarter turns": signed_permutations(),
         "a frame turned about one axis of A": [
             rotation_about(axis, sign * rng.uniform(0.3, 1.3)) for axis in np.eye(3) for sign in (1, -1)
         ],
-        "a tilted frame": [tilt(rng), rotation(rng), rotation(rng), half_turn(rng), rotation(rng)],
+        "a tilted frame": [tilt(rng), rotation(rng), upside_down @ tilt(rng), half_turn(rng), rotation(rng)],
         "a frame turned by a fraction of a degree": small_turns(rng),
     }
     cases = [Case(family, (R[:, 0], R[:, 1])) for family, matrices in families.items() for R in matrices]
@@ -502,8 +503,10 @@ def is_rotation_cases(rng):
     for R in changed:
         R[rng.integers(3), rng.integers(3)] += 1e-3
 
+    bases = itertools.cycle([rotation(rng), along_axes[rng.integers(24)], half_turn(rng), tilt(rng)])
+
     def some():
-        return along_axes[rng.integers(24)] if rng.integers(2) else rotation(rng)
+        return next(bases)
 
     decades = TOO_FAR * 10.0 ** np.arange(4)
     families = {
@@ -867,11 +870,19 @@ def _shifted(q, by):
     return moved / np.linalg.norm(moved)
 
 
+def _longer_than_1(rng):
+    """A unit quaternion whose product with itself is a little more than 1, in whatever order it is summed."""
+    while True:
+        q = quaternion(rotation(rng)).round(15)
+        if min(q @ q, np.sum(q * q), sum(q * q), sum((q * q)[::-1])) > 1.0:
+            return q
+
+
 def _around_zeros(q):
     """Pairs that differ in one number alone, which is 0 in q: 2e-7 in the one and -2e-7 in the other, or by too much."""
     sizes = ALIKE, -ALIKE, TOO_FAR, -TOO_FAR
     off = [*((by, sign) for by in sizes for sign in (1, -1)), (10 * TOO_FAR, 1), (100 * TOO_FAR, -1)]
-    for number, (by, sign) in product(np.flatnonzero(q == 0), off):
+    for number, (by, sign) in itertools.product(np.flatnonzero(q == 0), off):
         one, other = (q + half * np.eye(4)[number] for half in (by / 2, -by / 2))
         yield one / np.linalg.norm(one), sign * other / np.linalg.norm(other)
 
@@ -906,7 +917,7 @@ def same_rotation_cases(rng):
     positive = rng.permutation([0.40, 0.45, 0.55, 0.60])
     all_positive = [np.roll(positive, shift) / np.linalg.norm(positive) for shift in range(3)]
     positive_unit = all_positive[0]
-    whole_q = np.array([0, 0, 0, 1])
+    whole_q, too_long = np.array([0, 0, 0, 1]), _longer_than_1(rng)
     even = np.array([0.5, -0.5, 0.5, -0.5]) * rng.choice([-1.0, 1.0])  # four numbers of one size
     with_zeros = np.array([0.0, 0.6, -0.8, 0.0]), np.array([0.6, 0.0, 0.0, -0.8])
     families = {
@@ -916,7 +927,7 @@ def same_rotation_cases(rng):
         ],
         "the same quaternion twice, or two unrelated ones": [
             (q[3], q[3]), (q[4], q[5]), (q[6], -q[7]), (-q[8], q[8]), (all_positive[0], all_positive[1]),
-            (-all_positive[1], all_positive[2]), (whole_q, q[0]), (whole_q, whole_q),
+            (-all_positive[1], all_positive[2]), (whole_q, q[0]), (whole_q, whole_q), (too_long, too_long),
         ],
         "a turn and the opposite turn": [
             (tilted[0], tilted[0] * _OPPOSITE), (tilted[1], -tilted[1] * _OPPOSITE), (tilted[2], -tilted[2]),

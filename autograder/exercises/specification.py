@@ -18,7 +18,7 @@ from transform_lab.judging.kinds import KINDS, NOT_FINITE
 from transform_lab.judging.plain import PlainCase, PlainExercise, error_of
 from transform_lab.judging.reading import Unfit
 
-from .features import Feature
+from .features import Feature, special_of
 
 PUBLIC_SEED = 24  # the cases students see; any other seed draws hidden ones
 ORDER = 1  # with the seed, what the order of the cases is drawn from
@@ -152,6 +152,7 @@ def _case(exercise: Exercise, case: Case) -> PlainCase:
     given, named = fresh()
     return {
         "family": case.family,
+        "special": special_of(exercise.features, dict(signature(exercise.reference).bind(*given, **named).arguments)),
         "args": args,
         "kwargs": kwargs,
         "expected": expected,

@@ -14,6 +14,7 @@ from .advice import OUT, TWO_AT_A_TIME, advice
 from .answers import as_told, made_of, same
 from .kinds import ARGUMENT, EARLIER_ANSWER, KINDS
 from .naming import GENERAL, Diagnosis, general, joined, shared
+from .places import by_place
 from .plain import error_of, has_to_be_wrong, open_parts_of
 from .slips import by_shape
 from .two_mistakes import part_by_part
@@ -89,11 +90,13 @@ def _explain(name, exercise, replies, outcomes, tell):
     found = Diagnosis() if any(outcome.got is None for outcome in outcomes) else part_by_part(exercise, outcomes)
     if found.ids:
         return found
+    place = by_place(exercise, outcomes)
     if any(outcome.problem for outcome in outcomes):
-        return _general(name, exercise, replies, outcomes, tell)
+        found = _general(name, exercise, replies, outcomes, tell)
+        return found if found.ids else found._replace(ids=place.ids, hint=place.hint or found.hint)
     if any(outcome.mutated for outcome in outcomes):  # what is wrong may come from the changed argument alone
         return found
-    return by_shape(exercise, outcomes)
+    return place if place.ids else by_shape(exercise, outcomes)
 
 
 def _fit(index, exercise, replies, outcomes):

@@ -45,6 +45,23 @@ GENERAL = {
         "Your answer is right, but rounded.",
         "Return all the digits there are; round when you print.",
     ),
+    "integer-truncation": (
+        "Your function goes wrong where an argument is made of whole numbers, and is right everywhere else.",
+        "An array that takes its type from such an argument, as a copy does, or `zeros_like`, keeps whole numbers alone: "
+        "begin with an array of floats, such as `np.eye(4)` or `np.zeros(3)`.",
+    ),
+    "half-turn-missed": (
+        "Your function goes wrong at a half turn or near it, and is right everywhere else.",
+        "There w is 0, and so is the sine of the angle: do you divide by one of them, or by something as small?",
+    ),
+    "small-values-dropped": (
+        "Your function goes wrong where a turn, a distance or a difference is small, and is right everywhere else.",
+        "Is something small taken for nothing, by a tolerance? Do without that special case, or keep it for exact zeros.",
+    ),
+    "digits-lost": (
+        "Your function goes wrong where distances are large, and is right everywhere else.",
+        "Is a tolerance relative to the size of the numbers (`rtol`, `rcond`), or are they kept in single precision?",
+    ),
     "sign-slip": (
         "All numbers have the right size, but some have the wrong sign.",
         "Where can a sign get lost, or turn round? In a root, in an `abs`, in a cross product in the other order, at a minus.",
