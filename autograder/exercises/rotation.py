@@ -40,7 +40,9 @@ def about_z_cases(rng):
         "a positive angle below 90 degrees": [30, 45.0, 60, rng.uniform(2, 6), rng.uniform(10, 85)],
         "a negative angle": [-30, -45.0, -rng.uniform(50, 85), -rng.uniform(95, 175)],
         "an angle between 90 and 360 degrees": [120, 210.0, rng.uniform(95, 175), rng.uniform(275, 355)],
-        "more than a full turn": [405, -750.0, rng.uniform(370, 440), _between_singles(7200 + rng.uniform(200, 260)), -6120 - rng.uniform(10, 80)],
+        "more than a full turn": [
+            405, -750.0, rng.uniform(370, 440), _between_singles(rng.uniform(7400, 7460)), -rng.uniform(6130, 6200),
+        ],
         "a fraction of a degree": [0.5, -0.25, rng.uniform(0.01, 0.1), *(sign * angle for sign in (1, -1) for angle in small)],
         "a quarter turn, or a fraction of a degree more": [90, -90.0, *(90 + angle for angle in small)],
     }  # fmt: skip

@@ -5,7 +5,7 @@ Which cases are special (small, far, almost a half turn, whole numbers) is told 
 
 from .naming import Diagnosis, general
 
-BY_CHANCE = 0.05  # how likely it may be, at most, that as many cases, drawn blindly, are all of one sort
+BY_CHANCE = 0.08  # how likely it may be, at most, that as many cases, drawn blindly, are all of one sort
 
 # In this order: what is special of a case, as in PlainCase, and the name
 SORTS = {
