@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 from scipy.spatial.transform import Rotation
-from transform_lab.judging.diagnosis import together
+from transform_lab.judging.naming import together
 
 from .cases import (
     almost_half_turns,
@@ -117,7 +117,7 @@ ENTRY_BY_ENTRY = (
 )
 BOTTOM_ROW = (
     "The bottom row of your matrix is not that of a homogeneous transform.",
-    "Notebook 2 says which four numbers it always holds.",
+    "Which four numbers does it always hold?",
 )
 TRANSLATION_BELOW = (
     "The translation stands in the bottom row.",
@@ -852,7 +852,7 @@ TRANSFORM_POINT = Exercise(
             "translation-dropped",
             lambda a_T_b, p_in_b: a_T_b[:3, :3] @ p_in_b,
             "The point was turned, but not moved: the translation has dropped out.",
-            "Notebook 2 adds a fourth number to the point. Which one lets the translation in?",
+            "A fourth number is added to the point. Which one lets the translation in?",
         ),
         Misconception(
             "offset-not-rotated",

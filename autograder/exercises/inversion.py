@@ -2,7 +2,7 @@
 
 import numpy as np
 from scipy.spatial.transform import Rotation
-from transform_lab.judging.diagnosis import together
+from transform_lab.judging.naming import together
 
 from .cases import (
     FAR,
@@ -517,7 +517,7 @@ FOURTH_NUMBER = (
 )
 NOT_MOVED = (
     "The point was turned, but not moved: the translations have dropped out.",
-    "Notebook 2 adds a fourth number to the point. Which one lets the translation in?",
+    "A fourth number is added to the point. Which one lets the translation in?",
 )
 ALONG_THE_BASE = (
     "Your answer is an arrow between the gripper and the object, still along the axes of the base.",

@@ -6,7 +6,7 @@ from itertools import product
 
 import numpy as np
 from scipy.spatial.transform import Rotation
-from transform_lab.judging.diagnosis import together
+from transform_lab.judging.naming import together
 
 from .cases import (
     FAR,

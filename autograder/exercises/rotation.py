@@ -5,8 +5,8 @@ from itertools import product
 
 import numpy as np
 from scipy.spatial.transform import Rotation
-from transform_lab.judging.diagnosis import together
 from transform_lab.judging.kinds import TOLERANCE
+from transform_lab.judging.naming import together
 
 from .cases import (
     SMALL,

@@ -14,9 +14,8 @@ import numpy as np
 from transform_lab.judging import codec
 from transform_lab.judging.answers import parts_of
 from transform_lab.judging.comparison import frames_of
-from transform_lab.judging.diagnosis import error_of
-from transform_lab.judging.kinds import KINDS
-from transform_lab.judging.plain import PlainCase, PlainExercise
+from transform_lab.judging.kinds import KINDS, NOT_FINITE
+from transform_lab.judging.plain import PlainCase, PlainExercise, error_of
 from transform_lab.judging.reading import Unfit
 
 from .features import Feature
@@ -168,9 +167,12 @@ def _parts_of_the_right(exercise, case, expected):
     if error_of(expected):
         raise ValueError(f"{where} is an error, {error_of(expected)}")
     try:
-        return parts_of(exercise.returns, codec.decode(expected))
+        parts = parts_of(exercise.returns, codec.decode(expected))
     except Unfit as unfit:
         raise ValueError(f"{where} is {unfit}") from unfit
+    if not all(np.isfinite(value).all() for value in parts.values()):
+        raise ValueError(f"{where} has NaN or infinity in it")
+    return parts
 
 
 def _untold(misconception, args, kwargs):
@@ -210,7 +212,9 @@ def _answer(function, fresh):
 
 
 def _short(number):
-    """A number in as few characters as the tolerance allows, which is relative beyond 1."""
+    """A fingerprint in as few characters as the tolerance allows, which is relative beyond 1."""
+    if number == NOT_FINITE:
+        return number
     short = round(number, DIGITS_WRONG - max(0, math.frexp(number)[1] * 3 // 10))
     return int(short) if short.is_integer() else short
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import jinja2
 import numpy as np
 from transform_lab.judging.calling import call
-from transform_lab.judging.diagnosis import GENERAL
+from transform_lab.judging.naming import GENERAL
 from transform_lab.judging.verdict import examine
 from transform_lab.messages import Point, Pose, Quaternion
 from transform_lab.viewing.viewer import Viewer

@@ -61,7 +61,7 @@ class Cases:
             answer = function(*args, **kwargs)
         except Exception:
             return False
-        same = same_object(answer, codec.encode(answer), [*args, *kwargs.values()])
+        same = same_object(function, answer, codec.encode(answer), [*args, *kwargs.values()])
         return (
             is_right(self.returns, _as_sent(answer), self.right[number])
             and KINDS[self.returns].own(same)

@@ -280,8 +280,10 @@ def _rotations(rng):
         *cases.signed_permutations(),
         *(cases.half_turn(rng, largest) for largest in (0, 1, 2)),
         *(cases.rotation_about(axis, angle) for axis in np.eye(3) for angle in np.radians([30, -45, 120])),
-        *(cases.rotation_about(cases.slanted_axis(rng), angle) for angle in (1e-1, 1e-2, 1e-3)),
-        *(cases.near_half_turn(rng, short) for short in (1e-1, 1e-2, 1e-3)),
+        *cases.small_turns(rng),
+        *cases.almost_half_turns(rng),
+        cases.half_turn_to_rounding(rng),
+        *cases.half_turns_about_almost_an_axis(),
         *(cases.wide_turn(rng, largest) for largest in (0, 1, 2)),
         *(cases.tilt(rng) for _ in range(5)),
         *(cases.rotation(rng) for _ in range(10)),
@@ -297,7 +299,9 @@ def _vectors(rng):
         np.array([1.0, 2.0, 3.0]),
         np.array([-0.01, 0.02, 0.03]),
         np.array([50.0, -20.0, 30.0]),
-        *(cases.vector(rng, length) for length in (1.0, 1.0, 1.0, 0.01, 1e-4, 20.0)),
+        *(cases.vector(rng) for _ in range(3)),
+        *cases.near(rng),
+        *cases.far(rng),
     ]
 
 

@@ -279,11 +279,15 @@ def test_truths_are_far_from_the_tolerance():
             R = case.args[0]
             off = np.abs(R.T @ R - np.eye(3)).max()
             nearest = np.abs(R - nearest_rotation(R)).max()  # a fair way to compare, too
-            assert off < 0.35 * TOLERANCE and nearest < 0.2 * TOLERANCE or off > 7 * TOLERANCE and nearest > 2 * TOLERANCE
+            assert (
+                off < 0.35 * TOLERANCE and nearest < 0.2 * TOLERANCE or off > 7 * TOLERANCE and nearest > 2 * TOLERANCE
+            )
         for case in EXERCISES["same_rotation"].cases(np.random.default_rng(seed)):
             q1, q2 = case.args
             off = min(np.abs(q1 - q2).max(), np.abs(q1 + q2).max())
-            angle = 2 * np.arcsin(min(np.linalg.norm(q1 - q2), np.linalg.norm(q1 + q2), 2.0) / 2)  # of which half, or all, is compared
+            angle = 2 * np.arcsin(
+                min(np.linalg.norm(q1 - q2), np.linalg.norm(q1 + q2), 2.0) / 2
+            )  # of which half, or all, is compared
             assert off < 0.5 * TOLERANCE and angle < 0.9 * TOLERANCE or off > 1.9 * TOLERANCE and angle > 3 * TOLERANCE
 
 
@@ -313,7 +317,7 @@ def test_rotations_of_all_kinds_reach_transform_to_pose():
                 exact.add(tuple(R.ravel()))
         assert len(exact) == 24
         half_turns = sum(abs(trace + 1.0) < 1e-12 for trace in traces)
-        # nine of the 24, one in whole numbers or none, four about slanted axes, six about almost an axis of A, two that are almost half turns
+        # nine of the 24, four about slanted axes, six about almost an axis of A (and those that are almost half turns)
         assert half_turns >= 9 + 4 + 6
         assert any(-1.0 + 1e-7 < trace < -1.0 + 1e-4 for trace in traces)  # almost half turns
         assert any(3.0 - 1e-4 < trace < 3.0 for trace in traces)

@@ -1,17 +1,20 @@
 """What a student sees of `check`: right, wrong, not done, and every way to call it wrongly; as text and as HTML."""
 
+import copy
 import re
 
 import numpy as np
 import pytest
 from IPython.core.interactiveshell import InteractiveShell
 from IPython.utils.capture import capture_output
-from support import key_of
+from support import ASKED, judged, key_of
 from transform_lab import Point, Pose, Quaternion, check, once_done, tft
 from transform_lab.check import CheckFailed
 from transform_lab.judging import codec, comparison, panel
+from transform_lab.judging.advice import OUT
 from transform_lab.judging.calling import call
-from transform_lab.judging.verdict import Reply, Verdict, examine
+from transform_lab.judging.kinds import KINDS
+from transform_lab.judging.verdict import Reply, Verdict, _effort, compare, examine
 
 from autograder.exercises import EXERCISES
 
@@ -206,7 +209,11 @@ def test_answers_that_look_alike_show_how_far_apart_they_are(said):
         ("transform_to_pose", lambda T: Pose(Point(*T[:3, 3]), Quaternion()), "no orientation: all four numbers are 0"),
         ("transform_to_pose", lambda T: Pose(Point(*T[:3, 3]), Quaternion(0, 0, 0, 2)), ", and of length 2"),
         ("transform_to_pose", lambda T: Pose(Point(*T[:3, 3]), Quaternion(1e200, 0, 0, 1)), "and of length inf"),
-        ("transform_point", lambda T, p: ["0.1", "0.2", "0.3"], "a list instead of an array of 3 coordinates"),
+        (
+            "transform_point",
+            lambda T, p: ["0.1", "0.2", "0.3"],
+            "a list with a str in it instead of an array of 3 coordinates",
+        ),
         ("transform_point", lambda T, p: np.zeros((500, 2)), "yours  an array of shape (500, 2)"),
         ("is_rotation", lambda R: True, "  expected  False\n  yours     True"),
         ("chain", lambda *transforms: transforms[0], "transforms[1]"),
@@ -413,3 +420,187 @@ def test_what_ends_an_examination(outcome, why, status, words):
 def test_a_verdict_is_right_only_with_all_the_credit():
     assert Verdict("chain", credit=1.0).right
     assert not Verdict("chain", credit=0.99).right
+
+
+# --- what an answer really was ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "name, answer, words",
+    [
+        ("transform_to_pose", (Quaternion(), Point()), "a tuple of a Quaternion and a Point instead of a Pose"),
+        ("transform_to_pose", [Quaternion(), Point()], "a list instead of a Pose"),
+        ("transform_to_pose", Pose, "the class Pose itself, without parentheses, instead of a Pose"),
+        ("transform_to_pose", Pose(Point(None, 0, 0), Quaternion()), "0 of 4 points"),
+        ("transform_point", (1.0, 2.0, None), "a tuple with None in it instead of an array of 3 coordinates"),
+        ("transform_point", (1.0, 2.0), "a tuple of shape (2,) instead of an array of 3 coordinates"),
+        ("transform_point", np.ones(2), "an array of shape (2,) instead of an array of 3 coordinates"),
+        ("transform_point", [[1, 2], [3, 4]], "a list of shape (2, 2) instead of an array of 3 coordinates"),
+        ("transform_point", 0.5, "a float instead of an array of 3 coordinates"),
+        ("transform_point", {1.0, 2.0}, "a set instead of an array of 3 coordinates"),
+        ("make_transform", [[1.0, 0.0], [0.0]], "a list of rows that differ in length instead of a 4x4 array"),
+        ("make_transform", [["1", 0.0], [0.0, 1.0]], "a list with a str in it instead of a 4x4 array"),
+        ("make_transform", np.eye(4) == 1, "an array of shape (4, 4) of True and False instead of a 4x4 array"),
+        ("make_transform", np.eye, "a function instead of a 4x4 array"),
+        ("is_rotation", (True, False), "a tuple of a bool and a bool instead of True or False"),
+        ("is_rotation", np.eye(3) == 1, "an array of shape (3, 3) instead of True or False"),
+    ],
+)
+def test_what_came_is_called_what_it_is(said, name, answer, words):
+    text, _ = failing(name, lambda *args: answer, said)
+    assert words in text
+
+
+@pytest.mark.parametrize("name", [name for name in EXERCISES if EXERCISES[name].returns in ("pose", "transform")])
+def test_a_part_that_is_no_number_leaves_the_others_as_they_are(name):
+    """NaN in one part of an answer: that part is wrong, all others are read, counted and worth what they are without it."""
+    exercise, parts = EXERCISES[name], KINDS[EXERCISES[name].returns].parts
+    for spoilt in ("orientation", "position") if exercise.returns == "pose" else ("rotation", "translation"):
+        for value in (np.nan, np.inf):
+
+            def spoils(*args, spoilt=spoilt, value=value, **kwargs):
+                answer = copy.deepcopy(exercise.reference(*args, **kwargs))
+                if spoilt in ("rotation", "translation"):
+                    answer[0, 0 if spoilt == "rotation" else 3] = value
+                else:
+                    getattr(answer, spoilt).x = value
+                return answer
+
+            verdict = judged(name, spoils)
+            assert verdict.misconceptions == ("not-finite",)
+            assert verdict.parts == {part: 0 if part == spoilt else verdict.cases for part in parts}
+            others = sum(share for part, share in exercise.credit.items() if part != spoilt)
+            assert verdict.credit == pytest.approx(others)
+            assert "NaN or infinity" in panel.text(verdict) and comparison.scene(verdict) is None
+
+
+def test_messages_name_no_notebook_that_the_reader_is_in():
+    for notebook, released in ASKED.items():
+        for name in released.points:
+            for misconception in key_of(name)["misconceptions"]:
+                told = f"{misconception['says']} {misconception['hint']}"
+                assert not re.search(rf"\bnotebook {notebook[0]}\b", told, re.I), (name, told)
+
+
+@pytest.mark.parametrize("answer", [None, np.eye(3), "text"])
+def test_in_how_many_cases_an_answer_was_none(answer):
+    """A path without a return, or with another one, is not the whole function."""
+
+    def sometimes(a_T_b, p_in_b):
+        return EXERCISES["transform_point"].reference(a_T_b, p_in_b) if a_T_b[0, 3] <= 0 else answer
+
+    assert re.search(r" in \d+ of \d+ cases", judged("transform_point", sometimes).says)
+    assert " cases" not in judged("transform_point", lambda a_T_b, p_in_b: answer).says
+
+
+# --- arguments that are changed --------------------------------------------------------------------------------------
+
+WITH_ARGUMENTS = [name for name in EXERCISES if key_of(name)["parameters"]]
+
+
+def spoiling(function):
+    """The function, and after it something else in each of its arguments that can be changed."""
+
+    def spoils(*args, **kwargs):
+        answer = copy.deepcopy(function(*args, **kwargs))
+        for value in (*args, *kwargs.values()):
+            if isinstance(value, np.ndarray):
+                value[...] = 7
+            elif isinstance(value, Pose):
+                value.position.x += 7
+        return answer
+
+    return spoils
+
+
+@pytest.mark.parametrize("name", [name for name in WITH_ARGUMENTS if name != "rotation_about_z"])
+def test_right_numbers_with_a_changed_argument_earn_half_in_every_exercise(name):
+    verdict = judged(name, spoiling(EXERCISES[name].reference))
+    assert verdict.misconceptions == ("input-mutated",) and verdict.credit == pytest.approx(0.5)
+    assert verdict.says.startswith("Your answers are right, but your function changed one of its arguments")
+    assert verdict.failing is None
+
+
+@pytest.mark.parametrize("name", [name for name in WITH_ARGUMENTS if name != "rotation_about_z"])
+def test_a_changed_argument_halves_what_a_wrong_answer_earns(name):
+    for misconception in EXERCISES[name].misconceptions[::4]:
+        without, spoilt = judged(name, misconception.wrong), judged(name, spoiling(misconception.wrong))
+        assert not spoilt.right and 0 <= spoilt.credit <= without.credit
+        if "raised" not in spoilt.says:
+            assert spoilt.credit == pytest.approx(0.5 * without.credit)
+
+
+def test_a_case_that_changes_its_arguments_costs_its_family_alone():
+    def chain(*transforms):
+        answer = copy.deepcopy(EXERCISES["chain"].reference(*transforms))
+        if len(transforms) == 1:
+            transforms[0][0, 0] += 1
+        return answer
+
+    verdict, weights = judged("chain", chain), key_of("chain")["weights"]
+    families = {case["family"] for case in key_of("chain")["cases"] if len(case["args"]) == 1}
+    lost = sum(weights[family] for family in families) / sum(weights.values())
+    assert families and verdict.credit == pytest.approx(1 - 0.5 * lost)
+
+
+@pytest.mark.parametrize("product", [np.dot, np.matmul])
+def test_a_third_array_is_where_the_product_is_written(product):
+    verdict = judged("chain", lambda *transforms: product(*transforms))
+    assert verdict.misconceptions == ("input-mutated",)
+    assert verdict.hint.split("\n")[0] == OUT and "a plain `=`" not in verdict.hint.lower()
+
+
+def test_what_a_changed_argument_brings_about_has_no_name_of_its_own():
+    def pre_grasp(object_pose, distance=0.1):
+        before = copy.deepcopy(object_pose)
+        object_pose.position = EXERCISES["pre_grasp"].reference(object_pose, distance).position
+        return before
+
+    verdict = judged("pre_grasp", pre_grasp)
+    assert verdict.misconceptions == ("input-mutated",) and "written into the argument" in verdict.hint
+
+    def is_rotation(R):
+        for i in range(3):  # what is left of the columns is at right angles, whatever was there
+            for j in range(i):
+                R[:, i] -= (R[:, j] @ R[:, i]) * R[:, j]
+        return bool(np.allclose(R.T @ R, np.eye(3), rtol=0, atol=1e-6)) and np.linalg.det(R) > 0
+
+    assert judged("is_rotation", is_rotation).misconceptions == ("input-mutated",)
+
+
+# --- the example that is shown ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", WITH_ARGUMENTS)
+def test_the_example_is_the_easiest_of_those_that_fail(name):
+    """Over all families: no failing case has fewer numbers to reckon with, or easier ones."""
+    for misconception in EXERCISES[name].misconceptions[::3]:
+        verdict = judged(name, misconception.wrong)
+        failing = [case for case in key_of(name)["cases"] if fails(name, misconception.wrong, case)]
+        assert _effort([verdict.failing["args"], verdict.failing["kwargs"]]) == min(
+            _effort([case["args"], case["kwargs"]]) for case in failing
+        )
+
+
+def fails(name, function, case):
+    with np.errstate(all="ignore"):
+        return not compare(EXERCISES[name].returns, case, call(function, case["args"], case["kwargs"])).answered
+
+
+def test_what_is_easy_to_reckon_with():
+    half = np.sqrt(0.5)
+    easy_first = [
+        [0.0, 0.0],
+        [1.0, 0.0],
+        [90, 0.0],
+        [1.0, -2.0],
+        [half, 3.0],
+        [0.25, half],
+        [0.123456, 0.0],
+        [0.123456, 0.5],
+    ]
+    efforts = [_effort([codec.encode(np.array(numbers))]) for numbers in easy_first]
+    assert efforts == sorted(efforts) and efforts[0] == 0
+    assert _effort([codec.encode(np.eye(4))]) < _effort(
+        [codec.encode(Pose(Point(0.123, 0, 0), Quaternion(0, 0, 0, 1)))]
+    )

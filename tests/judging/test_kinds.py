@@ -15,10 +15,10 @@ from support import ROOT, SEEDS, judged
 from transform_lab import Point, Pose, PoseStamped, Quaternion, Viewer
 from transform_lab.check import CheckFailed, check
 from transform_lab.judging import codec, comparison, panel
-from transform_lab.judging.answers import parts_of, same
+from transform_lab.judging.answers import is_right, parts_of, same
 from transform_lab.judging.calling import call
-from transform_lab.judging.diagnosis import GENERAL
 from transform_lab.judging.kinds import KINDS, Kind, Part
+from transform_lab.judging.naming import GENERAL
 from transform_lab.judging.reading import Unfit, array
 from transform_lab.judging.verdict import examine
 
@@ -110,12 +110,13 @@ def test_whatever_a_function_returns_is_read_or_refused_in_words(returns, number
         parts = parts_of(returns, answer)
     except Unfit as unfit:
         assert unfit.misconception in GENERAL
-        said = {"returned-none": "None", "not-finite": "NaN or infinity"}
+        said = {"returned-none": "None"}
         words = said.get(unfit.misconception, r".* instead of .*|.*; fill in .*")
         assert re.fullmatch(words, str(unfit))
         return
     assert list(parts) == list(KINDS[returns].parts)
-    assert all(np.isfinite(value).all() for value in parts.values())
+    if not all(np.isfinite(value).all() for value in parts.values()):  # of which no part is right, or like another
+        assert not is_right(returns, answer, parts) and same(returns, codec.encode(answer), codec.encode(answer))
 
 
 @every_kind

@@ -8,7 +8,15 @@ from transform_lab import Point, Pose, Quaternion
 
 from autograder.exercises import EXERCISES, Case
 from autograder.exercises.cases import pose, rotation_about, transform
-from autograder.exercises.features import LENGTHS, of_number, of_orientation, of_pose, of_transform, of_two_frames, of_vector
+from autograder.exercises.features import (
+    LENGTHS,
+    of_number,
+    of_orientation,
+    of_pose,
+    of_transform,
+    of_two_frames,
+    of_vector,
+)
 from autograder.proving.adequacy import measure, seeds
 from autograder.proving.bands import empty_bands
 from autograder.proving.shortcuts import shortcuts

@@ -18,6 +18,14 @@ from .judging.verdict import LOOP, Verdict, examine
 from .jupyter import being_graded, names, shell
 from .outdated import OUT_OF_DATE, RUN_ABOVE, missing, outdated
 
+# What a function that is interrupted may have been waiting for: (pattern of the line, what helps).
+WAITS = (
+    (
+        r"\b(input|getpass)\(",
+        "It waits for somebody to type something in. All that it needs comes as arguments: take that out.",
+    ),
+    (r"\b(sleep|wait|join|acquire)\(", "It waits there. Nothing has to be waited for: take that out."),
+)
 KEY = Path(__file__).with_name("key.json")
 
 
@@ -91,8 +99,12 @@ def verdict_on(name, exercise, function):
             lambda args, kwargs: call(function, args, kwargs),
             lambda: call(function, first["args"], first["kwargs"]),
         )
-    except KeyboardInterrupt:
-        return Verdict(name, "timeout", says="Your function was interrupted before it was done.", hint=LOOP)
+    except KeyboardInterrupt as interrupt:
+        where = re.search(r", in your line .*", one_line(interrupt))
+        line = where[0] if where else ""
+        helps = next((helps for waits, helps in WAITS if re.search(waits, line)), LOOP)
+        says = f"Your function was interrupted before it was done{line}."
+        return Verdict(name, "timeout", says=says, hint=helps)
 
 
 @contextmanager

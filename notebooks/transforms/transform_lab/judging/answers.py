@@ -8,7 +8,10 @@ from .reading import Unfit, type_in_words
 
 
 def parts_of(returns, answer):
-    """`answer` (decoded) as the parts of its kind, {name: float64 array}; raises Unfit when it is none."""
+    """`answer` (decoded) as the parts of its kind, {name: float64 array}; raises Unfit when it is none.
+
+    Numbers may be NaN or infinite, which are never right: each part is judged by itself.
+    """
     if answer is None:
         raise Unfit("returned-none", "None")
     kind = KINDS[returns]
@@ -40,7 +43,15 @@ def made_of(returns, parts, answer):
         others = parts_of(returns, answer)
     except Unfit:
         return False
-    return all(part.agree(parts[name], others[name]) for name, part in KINDS[returns].parts.items())
+    return all(alike(part, parts[name], others[name]) for name, part in KINDS[returns].parts.items())
+
+
+def alike(part, one, other):
+    """Whether two answers' values of a part are the same: NaN and infinity are like each other, and like nothing else."""
+    finite = np.isfinite(one)
+    if not np.array_equal(finite, np.isfinite(other)):
+        return False
+    return part.agree(np.where(finite, one, 0.0), np.where(finite, other, 0.0))
 
 
 def _same_unfit(returns, unfit, one, other):

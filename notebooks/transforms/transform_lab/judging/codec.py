@@ -7,7 +7,8 @@ notebook. Whatever an object claims about itself, only these numbers reach the j
 | value                                 | plain data                                                   |
 |---------------------------------------|--------------------------------------------------------------|
 | None, bool, int, float, str           | itself; NaN and infinities as `{"float": "nan"}`             |
-| list, tuple                           | a list                                                       |
+| list                                  | a list                                                       |
+| tuple                                 | `{"tuple": [things]}`                                        |
 | numeric array, `np.matrix`, scalar    | `{"array": [numbers, row by row], "shape": [rows, columns]}` |
 | message, or any object with its fields | `{"message": "Pose", "fields": {"position": …, …}}`         |
 | anything else                         | `{"other": "name of its type"}`                              |
@@ -59,21 +60,25 @@ def encode(value: object, depth: int = 0, room: list[int] | None = None) -> Plai
     if isinstance(value, np.ndarray):
         _take(room, value.size)
         return _array(value)
-    if depth >= DEEPEST:
+    if depth >= DEEPEST or isinstance(value, type):  # a class has its messages' fields, too
         return _other(value)
     if (name := _message(value)) is not None:
         fields = {field: encode(getattr(value, field), depth + 1, room) for field in MESSAGES[name]}
         return {"message": name, "fields": fields}
     if isinstance(value, (list, tuple)) and len(value) <= LONGEST_LIST:
         if room is not None:
-            _take(room, len(value))
-            return [encode(item, depth + 1, room) for item in value]
+            return _things(value, depth, room)
         try:
-            room = [LARGEST_ARRAY - len(value)]
-            return [encode(item, depth + 1, room) for item in value]
+            return _things(value, depth, [LARGEST_ARRAY])
         except _Full:
             return _other(value)
     return _other(value)
+
+
+def _things(value, depth, room):
+    _take(room, len(value))
+    things = [encode(item, depth + 1, room) for item in value]
+    return {"tuple": things} if isinstance(value, tuple) else things
 
 
 class _Full(Exception):
@@ -118,6 +123,8 @@ def decode(plain: Plain, depth: int = 0) -> Any:
         return [decode(item, depth + 1) for item in plain]
     if isinstance(plain, dict):
         kind = next(iter(plain), None)
+        if kind == "tuple" and plain.keys() == {"tuple"} and isinstance(plain["tuple"], list):
+            return tuple(decode(plain["tuple"], depth))
         if kind == "float" and plain.keys() == {"float"} and plain["float"] in ("nan", "inf", "-inf"):
             return float(plain["float"])
         if kind == "array" and plain.keys() == {"array", "shape"}:
@@ -135,6 +142,8 @@ def _items(plain):
     while waiting and items <= LARGEST_ARRAY:
         for item in waiting.pop():
             items += 1
+            if isinstance(item, dict):
+                item = item.get("tuple")
             if isinstance(item, list):
                 waiting.append(item)
     return items
@@ -161,7 +170,8 @@ def _number(value):
 
 
 def _other(value):
-    return {"other": type(value).__name__[:LONGEST_TEXT]}
+    name = f"class {value.__name__}" if isinstance(value, type) else type(value).__name__
+    return {"other": name[:LONGEST_TEXT]}
 
 
 def _array(value):

@@ -37,6 +37,8 @@ class Part:
         """How far a value is off, in words: "off by 0.1 m"."""
         if self.agree(got, expected):
             return "right"
+        if not np.isfinite(got).all():
+            return "no numbers: NaN or infinity"
         if self.words:
             return self.words(got, expected)
         return f"off by {np.linalg.norm(got - expected):.3g} {self.unit}" if self.unit else "wrong"

@@ -11,7 +11,7 @@ def labelled(label, value):
     if hasattr(value, "position") and hasattr(value, "orientation"):
         fields = {name: getattr(value, name) for name in ("position", "orientation")}
         return [f"  {label}", *(f"    {name:13}{_field(field)}" for name, field in fields.items())]
-    if isinstance(value, (list, np.ndarray)):
+    if isinstance(value, (list, tuple, np.ndarray)):
         try:
             array = np.array(value, dtype=float)
         except (TypeError, ValueError):
@@ -39,7 +39,7 @@ def row(value):
         value = value.reshape(-1).tolist()
     elif hasattr(value, "x"):
         value = [getattr(value, letter) for letter in "xyzw" if hasattr(value, letter)]
-    if not isinstance(value, list):
+    if not isinstance(value, (list, tuple)):
         return str(value)
     letters = "xyzw" if len(value) in (3, 4) else [""] * len(value)
     return "   ".join(f"{letter} {_short(number)}".strip() for letter, number in zip(letters, value))

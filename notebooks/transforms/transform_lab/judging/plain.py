@@ -47,3 +47,13 @@ class PlainExercise(TypedDict):
     misconceptions: list[PlainMisconception]
     cases: list[PlainCase]
     points: NotRequired[float]
+
+
+def error_of(wrong):
+    """The name of the exception that a misconception's answer in the key stands for, or None."""
+    return wrong.get("raises") if isinstance(wrong, dict) else None
+
+
+def open_parts_of(wrong):
+    """The parts of the answer that may be anything, where a misconception's answer hangs on how it is computed."""
+    return set(wrong.get("any", ())) if isinstance(wrong, dict) else set()

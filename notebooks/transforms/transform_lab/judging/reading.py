@@ -24,10 +24,28 @@ def array(answer, wanted, *shapes):
             raise ValueError("no numbers")
         numbers = numbers.astype(np.float64)
     except (TypeError, ValueError) as error:
-        raise Unfit("wrong-type", f"{type_in_words(answer)} instead of {wanted}") from error
+        raise Unfit("wrong-type", f"{_no_numbers(answer)} instead of {wanted}") from error
     if numbers.shape not in shapes:
         raise Unfit("wrong-shape", f"an array of shape {numbers.shape} instead of {wanted}")
-    return _finite(numbers)
+    return numbers
+
+
+def _no_numbers(answer):
+    """What is no array of numbers, in words that say why it is none."""
+    if isinstance(answer, np.ndarray):  # decoded, it holds numbers or truths
+        return f"{type_in_words(answer)} of True and False"
+    if not isinstance(answer, (list, tuple)):
+        return type_in_words(answer)
+    odd = next((item for item in _innermost(answer) if isinstance(item, bool) or not isinstance(item, (int, float))), 0)
+    if odd == 0 and type(odd) is int:
+        return f"{type_in_words(answer)} of rows that differ in length"
+    return f"{type_in_words(answer)} with {type_in_words(odd)} in it"
+
+
+def _innermost(answer):
+    """What lists in lists hold."""
+    for item in answer:
+        yield from _innermost(item) if isinstance(item, (list, tuple)) else [item]
 
 
 def truth(answer, wanted):
@@ -58,20 +76,18 @@ def _components(message, name, letters):
             values[index] = value = value.item()
         if not isinstance(value, (bool, int, float)):
             raise Unfit("wrong-type", f"{type_in_words(value)} instead of a number in {name}.{letter}")
-    return _finite(np.array(values, dtype=np.float64))
-
-
-def _finite(numbers):
-    if not np.all(np.isfinite(numbers)):
-        raise Unfit("not-finite", "NaN or infinity")
-    return numbers
+    return np.array(values, dtype=np.float64)
 
 
 def type_in_words(answer):
-    """A decoded answer's type, for messages: "a list", "an array of shape (4, 4)"."""
+    """A decoded answer's type, for messages: "a list", "an array of shape (4, 4)", "a tuple of a Point and a Quaternion"."""
+    if answer is None:
+        return "None"
     if isinstance(answer, np.ndarray):
         return f"an array of shape {answer.shape}"
+    if isinstance(answer, tuple) and len(answer) == 2 and not any(isinstance(item, tuple) for item in answer):
+        return f"a tuple of {' and '.join(map(type_in_words, answer))}"
     name = answer.type_name if isinstance(answer, codec.Other) else type(answer).__name__
-    if name.startswith("array"):
-        return f"an {name}"
+    if name.startswith("class "):
+        return f"the {name} itself, without parentheses,"
     return f"{'an' if name[:1].lower() in 'aeiou' else 'a'} {name}"

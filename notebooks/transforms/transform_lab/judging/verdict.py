@@ -8,8 +8,10 @@ import json
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from . import codec
-from .answers import parts_of
+from .answers import alike, parts_of
 from .diagnosis import REMEMBERS, constant, diagnose
 from .kinds import KINDS
 from .plain import Plain, PlainCase, PlainExercise
@@ -41,9 +43,11 @@ class Outcome:
 
     parts: frozenset = frozenset()  # the parts of the answer that are right
     answered: bool = False  # all of them are
-    got: dict | None = None  # the answer's parts; None when nothing could be compared,
-    problem: tuple | None = None  # then this says why: (id of a general misconception or "", what came)
-    mutated: bool = False  # the call changed its arguments, which costs the case
+    got: dict | None = None  # the answer's parts; None when nothing could be compared
+    problem: tuple | None = (
+        None  # why not, or that there is NaN in it: (id of a general misconception or "", what came)
+    )
+    mutated: bool = False  # the call changed its arguments, which costs half of what the case earns
 
     @property
     def right(self) -> bool:
@@ -108,7 +112,7 @@ def examine(
     remembers = not right and again is not None and _differ(returns, answered[0], again())
     if not right:
         families = list(exercise["weights"])
-        answered.sort(key=lambda one: (families.index(one[0]["family"]), _simple_first(one[0])))
+        answered.sort(key=lambda one: _easy_first(one[0], families))
     cases, replies, outcomes = map(list, zip(*answered))
     verdict = Verdict(
         name,
@@ -127,7 +131,9 @@ def examine(
         verdict.credit = sum(exercise["credit"].get(part, 0.0) for part, times in verdict.parts.items() if times)
     if constant(replies):
         verdict.credit = 0.0
-    verdict.misconceptions, verdict.says, verdict.hint = diagnose({**exercise, "cases": cases}, replies, outcomes, tell)
+    verdict.misconceptions, verdict.says, verdict.hint = diagnose(
+        name, {**exercise, "cases": cases}, replies, outcomes, tell
+    )
     if remembers:
         verdict.misconceptions, verdict.says, verdict.hint = REMEMBERS
     for case, reply, outcome in answered:
@@ -147,13 +153,27 @@ def _differ(returns, answered, reply):
     if outcome.got is None or now.got is None:
         return (outcome.got is None) != (now.got is None)
     parts = KINDS[returns].parts
-    return not all(part.agree(now.got[name], outcome.got[name]) for name, part in parts.items())
+    return not all(alike(part, now.got[name], outcome.got[name]) for name, part in parts.items())
 
 
-def _simple_first(case: PlainCase) -> tuple[int, str]:
-    """Sorts cases of a family: what takes fewer characters to write is the better example."""
-    text = json.dumps([case["args"], case["kwargs"]])
-    return len(text), text
+def _easy_first(case: PlainCase, families: list[str]) -> tuple[int, int, str]:
+    """Sorts cases: the better example is the one that is easier to redo by hand, and of these the shorter to write."""
+    given = [case["args"], case["kwargs"]]
+    return _effort(given), families.index(case["family"]), json.dumps(given)
+
+
+def _effort(plain: Plain) -> int:
+    """How hard these arguments are to reckon with by hand: each number that is not 0 counts, and most so one with many digits."""
+    if isinstance(plain, dict):
+        return sum(map(_effort, [fields for what, fields in plain.items() if what != "shape"]))
+    if isinstance(plain, list):
+        return sum(map(_effort, plain))
+    if not isinstance(plain, (int, float)) or plain == 0:
+        return 0
+    if plain == int(plain) and (abs(plain) < 10 or plain % 90 == 0):
+        return 1
+    of_a_quarter_turn = abs(plain**2 - 0.5) < 1e-9
+    return 2 if of_a_quarter_turn or round(plain, 2) == plain else 8
 
 
 def _unfinished(name: str, reply: Reply, case: PlainCase) -> Verdict:
@@ -182,11 +202,15 @@ def compare(returns: str, case: PlainCase, reply: Reply) -> Outcome:
         return Outcome(problem=(unfit.misconception, str(unfit)), mutated=mutated)
     parts = KINDS[returns].parts
     good = frozenset(name for name, part in parts.items() if part.agree(got[name], expected[name]))
-    return Outcome(good, len(good) == len(parts), got, mutated=mutated)
+    problem = None if all(np.isfinite(value).all() for value in got.values()) else ("not-finite", "NaN or infinity")
+    return Outcome(good, len(good) == len(parts), got, problem, mutated)
 
 
 def _credit(exercise: PlainExercise, cases: list[PlainCase], outcomes: list[Outcome]) -> float:
-    """Each family of cases counts by its weight; within it, a part earns its share when it is right in every case."""
+    """Each family of cases counts by its weight; within it, a part earns its share when it is right in every case.
+
+    A family in which a call changed its arguments earns half of that: the numbers are right, the function is of no use yet.
+    """
     if all(outcome.right for outcome in outcomes):
         return 1.0
     families: dict[str, list[Outcome]] = {}
@@ -194,8 +218,9 @@ def _credit(exercise: PlainExercise, cases: list[PlainCase], outcomes: list[Outc
         families.setdefault(case["family"], []).append(outcome)
     earned = 0.0
     for family, members in families.items():
-        shared = frozenset.intersection(*(frozenset() if member.mutated else member.parts for member in members))
-        complete = all(member.right for member in members)
-        share = 1.0 if complete else sum(exercise["credit"].get(part, 0.0) for part in shared)
-        earned += exercise["weights"][family] * share
+        parts = frozenset.intersection(*(member.parts for member in members))
+        complete = all(member.answered for member in members)
+        share = 1.0 if complete else sum(exercise["credit"].get(part, 0.0) for part in parts)
+        untouched = not any(member.mutated for member in members)
+        earned += exercise["weights"][family] * share * (1.0 if untouched else 0.5)
     return earned / sum(exercise["weights"][family] for family in families)

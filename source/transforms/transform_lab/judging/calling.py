@@ -10,7 +10,11 @@ from .kinds import ARGUMENT, EARLIER_ANSWER
 from .plain import Plain
 from .verdict import Reply
 
-_before: list = []  # the last answer that was returned, and what it was then, as plain data
+_before: list = [
+    None,
+    None,
+    None,
+]  # the function that was called last, its answer, and what that was then, as plain data
 MOST_PRINTED = 200  # characters of what a function prints while it is checked
 
 
@@ -31,14 +35,15 @@ def reply(function: Callable, args: list, kwargs: dict) -> Reply:
         return Reply("raised", error=one_line(error))
     after = [[codec.encode(arg) for arg in args], {key: codec.encode(arg) for key, arg in kwargs.items()}]
     plain = codec.encode(value)
-    same = same_object(value, plain, [*args, *kwargs.values()])
+    same = same_object(function, value, plain, [*args, *kwargs.values()])
     return Reply("returned", plain, after, printed=printed.getvalue()[:MOST_PRINTED], same_object=same)
 
 
-def same_object(value: object, plain: Plain, given: list) -> str:
+def same_object(function: Callable, value: object, plain: Plain, given: list) -> str:
     """What the answer to this call (as it is, and as plain data) is instead of an object of its own; see Reply."""
-    changed = _before and codec.encode(_before[0]) != _before[1]
-    _before[:] = value, plain
+    last, answer, then = _before
+    changed = last is function and codec.encode(answer) != then
+    _before[:] = function, value, plain
     if changed:
         return EARLIER_ANSWER
     return ARGUMENT if any(value is arg for arg in given) else ""

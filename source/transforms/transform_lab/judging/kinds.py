@@ -3,6 +3,7 @@
 A new kind is one more entry of KINDS; `check`, the judge, the diagnosis and every page go by it.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -15,6 +16,7 @@ from . import lines, reading
 ARGUMENT = "argument"  # one of the call's own arguments: who changes the one changes the other
 EARLIER_ANSWER = "earlier answer"  # the same object as an answer before, which has changed with this call
 TOLERANCE = 1e-6  # absolute up to 1 (metre, or component of a unit vector), relative beyond
+NOT_FINITE = "not finite"
 # No sum of these with whole-numbered factors is zero, so that answers that differ have other fingerprints.
 WEIGHTS = np.sqrt([2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0, 19.0, 23.0]) / 5.0
 
@@ -40,19 +42,27 @@ class Part:
 
     @staticmethod
     def fingerprint(numbers):
-        """One number for a value, by which a misconception's answer is known: a whole one would make a large key."""
-        return float(numbers.ravel() @ WEIGHTS[: numbers.size])
+        """One number for a value, by which a misconception's answer is known: a whole one would make a large key.
+
+        NOT_FINITE for a value with NaN or infinity in it.
+        """
+        found = float(numbers.ravel() @ WEIGHTS[: numbers.size])
+        return found if math.isfinite(found) else NOT_FINITE
 
     def has(self, got, fingerprint):
         """Whether a value has this fingerprint, to the tolerance of its numbers."""
+        own = self.fingerprint(got)
+        if NOT_FINITE in (own, fingerprint):
+            return own == fingerprint
         room = TOLERANCE * self.fingerprint(np.maximum(1.0, np.abs(got)))
-        signs = (1, -1) if self.quaternion else (1,)
-        return any(abs(sign * self.fingerprint(got) - fingerprint) <= room for sign in signs)
+        return any(abs(sign * own - fingerprint) <= room for sign in ((1, -1) if self.quaternion else (1,)))
 
     def off(self, got, expected):
         """How far a value is off, in words: "off by 0.1 m"."""
         if self.agree(got, expected):
             return "right"
+        if not np.isfinite(got).all():
+            return "no numbers: NaN or infinity"
         if self.words:
             return self.words(got, expected)
         return f"off by {np.linalg.norm(got - expected):.3g} {self.unit}" if self.unit else "wrong"

@@ -49,3 +49,18 @@ class PlainExercise(TypedDict):
     misconceptions: list[PlainMisconception]
     cases: list[PlainCase]
     points: NotRequired[float]
+
+
+def error_of(wrong):
+    """The name of the exception that a misconception's answer in the key stands for, or None."""
+    return wrong.get("raises") if isinstance(wrong, dict) else None
+
+
+def open_parts_of(wrong):
+    """The parts of the answer whose numbers hang on how exactly a misconception computes them."""
+    return set(wrong.get("any", wrong.get("not", ()))) if isinstance(wrong, dict) else set()
+
+
+def has_to_be_wrong(wrong):
+    """Whether these parts are wrong, each of them, whatever they are; else they may be anything."""
+    return isinstance(wrong, dict) and "not" in wrong

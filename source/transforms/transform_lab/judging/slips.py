@@ -1,0 +1,76 @@
+"""Names by the shape of the error, where no misconception explains the answers: what all that is wrong has in common.
+
+They say what is seen, and no more: only signs are wrong, a single number is, or a predicate fails on one side alone.
+"""
+
+from itertools import product
+
+import numpy as np
+
+from . import codec
+from .answers import parts_of
+from .kinds import KINDS, TOLERANCE
+from .naming import Diagnosis, general
+
+AT_LEAST, MANY = 2, 4  # failing cases: one shows nothing that they have in common; many need no number that tells
+
+
+def by_shape(exercise, outcomes):
+    """The Diagnosis of wrong answers (all of which could be compared) by what is wrong with each of them."""
+    expected = [parts_of(exercise["returns"], codec.decode(case["expected"])) for case in exercise["cases"]]
+    failing = [(outcome.got, right) for outcome, right in zip(outcomes, expected) if not outcome.answered]
+    if len(failing) < AT_LEAST:
+        return Diagnosis()
+    if exercise["returns"] == "truth":
+        deserved = {bool(right["answer"]) for _, right in failing}
+        met = {bool(right["answer"]) for outcome, right in zip(outcomes, expected) if outcome.answered}
+        one_sided = len(deserved) == 1 and not deserved >= met
+        return general("too-strict" if True in deserved else "too-generous") if one_sided else Diagnosis()
+    if sum(part.size for part in expected[0].values()) == 1:
+        return Diagnosis()
+    return _slip([_readings(KINDS[exercise["returns"]].parts, got, right) for got, right in failing])
+
+
+def _slip(failing):
+    """The Diagnosis of wrong numbers, from the `_readings` of each failing case."""
+    slips = [slip for readings in failing for slip in readings[0].values()]
+    if not any(slip.telling for slip in slips) and len(failing) < MANY:
+        return Diagnosis()
+    alone = [{place for reading in readings if len(reading) == 1 for place in reading} for readings in failing]
+    places = set.intersection(*alone)
+    where = f"{places.pop()}. All others are right." if len(places) == 1 else ""
+    if all(slip.size_right for slip in slips):
+        return general("sign-slip", f"A single sign is wrong, always the same: {where}" if where else "")
+    return general("entry-slip", f"A single number is wrong, always the same: {where}") if where else Diagnosis()
+
+
+class _Wrong:
+    """A wrong number: whether its size is right, and whether that tells anything."""
+
+    def __init__(self, got, expected):
+        self.size_right = abs(abs(got) - abs(expected)) <= TOLERANCE * max(1.0, abs(expected))
+        # Another formula hardly gives this number by chance, as it does 0, 1, and the sine of 30, 45 or 60 degrees.
+        self.telling = abs(4 * expected**2 - round(4 * expected**2)) > 1e-3
+
+
+def _readings(parts, got, expected):
+    """The wrong numbers of an answer, as [{place: _Wrong}, …]: one for each sign of its quaternion, for q and -q are the same."""
+    signs = [(1, -1) if part.quaternion else (1,) for part in parts.values()]
+    return [
+        {
+            _place(name, part, index): _Wrong(sign * got[name][index], expected[name][index])
+            for sign, (name, part) in zip(chosen, parts.items())
+            for index in np.ndindex(got[name].shape)
+            if abs(sign * got[name][index] - expected[name][index]) > TOLERANCE * max(1.0, abs(expected[name][index]))
+        }
+        for chosen in product(*signs)
+    ]
+
+
+def _place(name, part, index):
+    """Where a number stands in an answer, in words."""
+    if len(index) == 2:
+        return f"row {index[0] + 1}, column {index[1] + 1} (`[{index[0]}, {index[1]}]` in NumPy)"
+    if part.unit == "m" or part.quaternion:
+        return f"{'xyzw'[index[0]]} of the {name}"
+    return f"number {index[0] + 1} of the {name}"
