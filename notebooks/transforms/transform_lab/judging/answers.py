@@ -54,6 +54,13 @@ def alike(part, one, other):
     return part.agree(np.where(finite, one, 0.0), np.where(finite, other, 0.0))
 
 
+def as_told(part, name, fingerprint, outcome):
+    """Whether a part of an answer is as the key tells of a misconception's: its fingerprint, or None where it is right."""
+    if fingerprint is None or name in outcome.parts:
+        return fingerprint is None and name in outcome.parts
+    return part.has(outcome.got[name], fingerprint)
+
+
 def _same_unfit(returns, unfit, one, other):
     try:
         parts_of(returns, other)

@@ -33,6 +33,14 @@ GENERAL = {
         "It remembers earlier calls. Does it change a default argument, such as `pose=Pose()`, or something made outside of it? "
         "Make a new object in each call.",
     ),
+    "answer-reused": (
+        "Your function hands out the same object in every call: each answer overwrites the one before.",
+        "Make a new array or message inside the function. A default argument, such as `T=np.eye(4)`, is made only once.",
+    ),
+    "argument-returned": (
+        "Your function returns the very object that it was given, where a new one was asked for.",
+        "Whoever changes the answer would change the argument, too: make a new object, and fill in its numbers.",
+    ),
     "not-normalised": (
         "Your quaternion has the right direction, but its length is not 1.",
         "An orientation is a unit quaternion: divide by its length.",

@@ -26,7 +26,10 @@ def array(answer, wanted, *shapes):
     except (TypeError, ValueError) as error:
         raise Unfit("wrong-type", f"{_no_numbers(answer)} instead of {wanted}") from error
     if numbers.shape not in shapes:
-        raise Unfit("wrong-shape", f"an array of shape {numbers.shape} instead of {wanted}")
+        what = type_in_words(answer)
+        if not isinstance(answer, np.ndarray) and numbers.ndim:
+            what = f"{what.partition(' of ')[0]} of shape {numbers.shape}"
+        raise Unfit("wrong-shape", f"{what} instead of {wanted}")
     return numbers
 
 
