@@ -42,7 +42,6 @@ from .cases import (
 from .conversions import (
     BEYOND_120,
     BY_ANGLES,
-    BY_BRANCHES,
     BY_TRACE,
     ORDERS,
     TURNED_WITH_A_TERM_MISSING,
@@ -275,7 +274,7 @@ SHARED: tuple[Misconception, ...] = (
             *says,
             **open_where(varies, fails, lambda object_pose, offset: matrix(object_pose)),
         )
-        for identifier, says, wrong, varies, fails in (BY_TRACE, BEYOND_120, BY_ANGLES, *BY_BRANCHES)
+        for identifier, says, wrong, varies, fails in (BY_TRACE, BEYOND_120, BY_ANGLES)
     ),
     Misconception(
         "position-missing",

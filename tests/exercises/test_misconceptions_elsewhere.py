@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from solutions.wrong import WRONG
 from support import SEEDS, judged, key_of
-from transform_lab.judging.diagnosis import GENERAL, has_to_be_wrong
+from transform_lab.judging.naming import GENERAL
+from transform_lab.judging.plain import has_to_be_wrong
 
 from autograder.exercises import EXERCISES, Misconception
 from autograder.exercises.cases import matrix, orientation, pose, pose_of, position
@@ -147,7 +148,7 @@ SAME_NUMBERS = {
 SAME_NUMBERS["pre_grasp"] = SAME_NUMBERS["waypoint"]
 
 
-@pytest.mark.parametrize("whole, step", STEPS, ids="-".join)
+@pytest.mark.parametrize("whole, step", STEPS, ids=lambda name: name)
 def test_a_step_keeps_its_name_or_has_none(whole, step, thorough):
     misconceptions = EXERCISES[step].misconceptions
     found = []

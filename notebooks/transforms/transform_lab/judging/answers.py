@@ -6,6 +6,8 @@ from . import codec
 from .kinds import KINDS, TOLERANCE
 from .reading import Unfit, type_in_words
 
+WRONG = object()  # a part of an answer that is wrong, in whatever way
+
 
 def parts_of(returns, answer):
     """`answer` (decoded) as the parts of its kind, {name: float64 array}; raises Unfit when it is none.
@@ -52,6 +54,13 @@ def alike(part, one, other):
     if not np.array_equal(finite, np.isfinite(other)):
         return False
     return part.agree(np.where(finite, one, 0.0), np.where(finite, other, 0.0))
+
+
+def as_told(part, name, fingerprint, outcome):
+    """Whether a part of an answer is as the key tells of a misconception's: its fingerprint, None where it is right, WRONG."""
+    if fingerprint is None or name in outcome.parts:
+        return fingerprint is None and name in outcome.parts
+    return fingerprint is WRONG or part.has(outcome.got[name], fingerprint)
 
 
 def _same_unfit(returns, unfit, one, other):

@@ -6,9 +6,15 @@ from collections.abc import Callable
 from contextlib import redirect_stdout
 
 from . import codec
+from .kinds import ARGUMENT, EARLIER_ANSWER
 from .plain import Plain
 from .verdict import Reply
 
+_before: list = [
+    None,
+    None,
+    None,
+]  # the function that was called last, its answer, and what that was then, as plain data
 MOST_PRINTED = 200  # characters of what a function prints while it is checked
 
 
@@ -28,7 +34,19 @@ def reply(function: Callable, args: list, kwargs: dict) -> Reply:
             return Reply("not done")
         return Reply("raised", error=one_line(error))
     after = [[codec.encode(arg) for arg in args], {key: codec.encode(arg) for key, arg in kwargs.items()}]
-    return Reply("returned", codec.encode(value), after, printed=printed.getvalue()[:MOST_PRINTED])
+    plain = codec.encode(value)
+    same = same_object(function, value, plain, [*args, *kwargs.values()])
+    return Reply("returned", plain, after, printed=printed.getvalue()[:MOST_PRINTED], same_object=same)
+
+
+def same_object(function: Callable, value: object, plain: Plain, given: list) -> str:
+    """What the answer to this call (as it is, and as plain data) is instead of an object of its own; see Reply."""
+    last, answer, then = _before
+    changed = last is function and codec.encode(answer) != then
+    _before[:] = function, value, plain
+    if changed:
+        return EARLIER_ANSWER
+    return ARGUMENT if any(value is arg for arg in given) else ""
 
 
 def _raised_in(function, error):

@@ -104,7 +104,7 @@ def _message(value):
 
 
 def decode(plain: Plain, depth: int = 0) -> Any:
-    """The value that `plain` stands for: arrays as float64 (or bool), messages as those of `transform_lab`.
+    """The value that `plain` stands for: arrays as float64 (int64 of integers, bool), messages as those of `transform_lab`.
 
     Raises NotPlain for anything that `encode` cannot have written, so it is safe on bytes from an untrusted process.
     What has no plain form comes back as an `Other` with the name of its type.
@@ -200,8 +200,9 @@ def _decode_array(flat, shape):
     numbers = [item if type(item) is float else decode(item, DEEPEST) for item in flat]
     if not all(isinstance(number, (bool, int, float)) for number in numbers):
         raise NotPlain("an array of something else than numbers")
-    truth = len(numbers) > 0 and all(isinstance(number, bool) for number in numbers)
-    return np.array(numbers, dtype=bool if truth else np.float64).reshape(shape)
+    kinds = set(map(type, numbers))
+    dtype = {bool: bool, int: np.int64}.get(*kinds, np.float64) if len(kinds) == 1 else np.float64
+    return np.array(numbers, dtype=dtype).reshape(shape)
 
 
 def _decode_message(name, fields, depth):

@@ -11,10 +11,11 @@ from collections import Counter
 
 from . import codec
 from .advice import OUT, TWO_AT_A_TIME, advice
-from .answers import made_of, same
-from .kinds import KINDS
+from .answers import as_told, made_of, same
+from .kinds import ARGUMENT, EARLIER_ANSWER, KINDS
 from .naming import GENERAL, Diagnosis, general, joined, shared
-from .plain import error_of, open_parts_of
+from .places import by_place
+from .plain import error_of, has_to_be_wrong, open_parts_of
 from .slips import by_shape
 from .two_mistakes import part_by_part
 
@@ -29,16 +30,26 @@ WRITTEN_ELSEWHERE = (
     "Is the result written into the argument, in place of the answer? Make a new object, write into that, and return it.",
 )
 REMEMBERS = general("mutable-default")
+NOT_ITS_OWN = {
+    ARGUMENT: general("argument-returned"),
+    EARLIER_ANSWER: general(
+        "mutable-default",
+        "Your function hands out the same object in every call: each answer overwrites the one before.",
+        "Make a new array or message inside the function. A default argument, such as `T=np.eye(4)`, is made only once.",
+    ),
+}
 
 
 def diagnose(name, exercise, replies, outcomes, tell=str):
     """The Diagnosis of the answers to all cases of `exercise`; see transform_lab.judging.verdict for the arguments.
 
-    That a call changed its arguments is said first, and hides nothing but what is its consequence.
+    That a call changed its arguments is said first, and hides nothing but what is its consequence; so is that an answer is no
+    object of its own.
     """
     found = _explain(name, exercise, replies, outcomes, tell)
     if not any(outcome.mutated for outcome in outcomes):
-        return found
+        kinds = sorted({outcome.same_object for outcome in outcomes} - {""})
+        return joined([*(NOT_ITS_OWN[kind] for kind in kinds), found]) if kinds else found
     says, hint = GENERAL["input-mutated"]
     failed = [(case, outcome) for case, outcome in zip(exercise["cases"], outcomes) if not outcome.answered]
     if not failed:
@@ -79,46 +90,54 @@ def _explain(name, exercise, replies, outcomes, tell):
     found = Diagnosis() if any(outcome.got is None for outcome in outcomes) else part_by_part(exercise, outcomes)
     if found.ids:
         return found
+    place = by_place(exercise, outcomes)
     if any(outcome.problem for outcome in outcomes):
-        return _general(name, exercise, replies, outcomes, tell)
+        found = _general(name, exercise, replies, outcomes, tell)
+        return found if found.ids else found._replace(ids=place.ids, hint=place.hint or found.hint)
     if any(outcome.mutated for outcome in outcomes):  # what is wrong may come from the changed argument alone
         return found
-    return by_shape(exercise, outcomes)
+    return place if place.ids else by_shape(exercise, outcomes)
 
 
 def _fit(index, exercise, replies, outcomes):
     """How well a misconception explains the answers.
 
-    0: not. 2: they equal its own wherever it differs from the right one, and are right elsewhere. 1: so they do, where
-    its own are not open. Less: it is open wherever it differs, and this share of these cases is wrong (a single wrong
-    one proves nothing).
+    0: not. 3: they equal its own wherever it differs from the right one, and are right elsewhere. 2: so they do, where
+    its own are not open. 1: none of its own is told, but they are wrong wherever it has to be, and right wherever it is.
     """
-    differs, open_cases, wrong_there = False, 0, 0
+    parts = set(KINDS[exercise["returns"]].parts)
+    fails = equals = is_open = False
     for case, reply, outcome in zip(exercise["cases"], replies, outcomes):
         wrong = case["wrong"][index]
         if wrong is None:
             if not outcome.answered:
                 return 0
         elif open_parts := open_parts_of(wrong):
-            open_cases, wrong_there = open_cases + 1, wrong_there + (not outcome.answered)
-            raised = outcome.got is None and _broke_down(outcome)
-            if not raised and not set(KINDS[exercise["returns"]].parts) - open_parts <= outcome.parts:
+            came_to_nothing = outcome.got is None and _broke_down(outcome)
+            if not came_to_nothing and not parts - open_parts <= outcome.parts:
                 return 0
+            if not has_to_be_wrong(wrong):
+                is_open = True
+            elif open_parts & outcome.parts:
+                return 0
+            else:
+                fails = True
+        elif outcome.answered or not _equals(wrong, exercise["returns"], reply, outcome):
+            return 0
         else:
-            differs = True
-            if outcome.answered or not _equals(wrong, exercise["returns"], reply, outcome):
-                return 0
-    if differs:
-        return 1 if open_cases else 2
-    return wrong_there / open_cases if wrong_there > 1 else 0
+            equals = True
+    return (2 if is_open else 3) if equals else int(fails)
 
 
 def _equals(wrong, returns, reply, outcome):
     if raises := error_of(wrong):
         return reply.outcome == "raised" and re.match(r"\w*", reply.error)[0] == raises
     if outcome.got is None:
-        return reply.outcome == "returned" and same(returns, reply.value, wrong)
-    return made_of(returns, outcome.got, codec.decode(wrong))
+        return reply.outcome == "returned" and "unfit" in wrong and same(returns, reply.value, wrong["unfit"])
+    return isinstance(wrong, list) and all(
+        as_told(part, name, fingerprint, outcome)
+        for (name, part), fingerprint in zip(KINDS[returns].parts.items(), wrong)
+    )
 
 
 def _broke_down(outcome):

@@ -3,6 +3,7 @@
 A new kind is one more entry of KINDS; `check`, the judge, the diagnosis and every page go by it.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -11,7 +12,13 @@ import numpy as np
 from ..messages import Point, Pose, Quaternion
 from . import lines, reading
 
+# What an answer may be instead of an object of its own
+ARGUMENT = "argument"  # one of the call's own arguments: who changes the one changes the other
+EARLIER_ANSWER = "earlier answer"  # the same object as an answer before, which has changed with this call
 TOLERANCE = 1e-6  # absolute up to 1 (metre, or component of a unit vector), relative beyond
+NOT_FINITE = "not finite"
+# No sum of these with whole-numbered factors is zero, so that answers that differ have other fingerprints.
+WEIGHTS = np.sqrt([2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0, 19.0, 23.0]) / 5.0
 
 
 @dataclass(frozen=True)
@@ -32,6 +39,23 @@ class Part:
         if self.quaternion:
             return bool(min(np.abs(got - expected).max(), np.abs(got + expected).max()) <= TOLERANCE)
         return bool(np.all(np.abs(got - expected) <= TOLERANCE * np.maximum(1.0, np.abs(expected))))
+
+    @staticmethod
+    def fingerprint(numbers):
+        """One number for a value, by which a misconception's answer is known: a whole one would make a large key.
+
+        NOT_FINITE for a value with NaN or infinity in it.
+        """
+        found = float(numbers.ravel() @ WEIGHTS[: numbers.size])
+        return found if math.isfinite(found) else NOT_FINITE
+
+    def has(self, got, fingerprint):
+        """Whether a value has this fingerprint, to the tolerance of its numbers."""
+        own = self.fingerprint(got)
+        if NOT_FINITE in (own, fingerprint):
+            return own == fingerprint
+        room = TOLERANCE * self.fingerprint(np.maximum(1.0, np.abs(got)))
+        return any(abs(sign * own - fingerprint) <= room for sign in ((1, -1) if self.quaternion else (1,)))
 
     def off(self, got, expected):
         """How far a value is off, in words: "off by 0.1 m"."""
@@ -123,6 +147,7 @@ class Kind:
     wanted: what the function has to return, in words: "a 4x4 array"
     parts: {name: Part}, which are right or wrong by themselves, and which an exercise gives credit for
     read: from (answer, wanted) to {name of the part: array}; raises reading.Unfit for what is no answer of this kind
+    new: whether the answer may not be one of the arguments: a Pose can be changed in place, and docstrings promise a new one
     draw: adds an answer to a viewer, see above; None for what cannot be drawn
     show: compares two answers in lines of text, see above
     """
@@ -132,6 +157,11 @@ class Kind:
     read: Callable
     draw: Callable | None
     show: Callable = in_rows
+    new: bool = False
+
+    def own(self, same_object):
+        """Whether an answer is an object of its own, as far as that was promised; see transform_lab.judging.verdict.Reply."""
+        return not same_object or same_object == ARGUMENT and not self.new
 
 
 def _transform(answer, wanted):
@@ -166,6 +196,7 @@ KINDS = {
         parts={"position": PLACE, "orientation": ORIENTATION},
         read=lambda answer, wanted: reading.fields(answer, wanted, position="xyz", orientation="xyzw"),
         draw=draw_pose,
+        new=True,
     ),
     "coordinates": Kind(
         wanted="an array of 3 coordinates",

@@ -33,6 +33,10 @@ GENERAL = {
         "It remembers earlier calls. Does it change a default argument, such as `pose=Pose()`, or something made outside of it? "
         "Make a new object in each call.",
     ),
+    "argument-returned": (
+        "Your function returns the very object that it was given, where a new one was asked for.",
+        "Whoever changes the answer would change the argument, too: make a new object, and fill in its numbers.",
+    ),
     "not-normalised": (
         "Your quaternion has the right direction, but its length is not 1.",
         "An orientation is a unit quaternion: divide by its length.",
@@ -40,6 +44,23 @@ GENERAL = {
     "rounded": (
         "Your answer is right, but rounded.",
         "Return all the digits there are; round when you print.",
+    ),
+    "integer-truncation": (
+        "Your function goes wrong where an argument is made of whole numbers, and is right everywhere else.",
+        "An array that takes its type from such an argument, as a copy does, or `zeros_like`, keeps whole numbers alone: "
+        "begin with an array of floats, such as `np.eye(4)` or `np.zeros(3)`.",
+    ),
+    "half-turn-missed": (
+        "Your function goes wrong at a half turn or near it, and is right everywhere else.",
+        "There w is 0, and so is the sine of the angle: do you divide by one of them, or by something as small?",
+    ),
+    "small-values-dropped": (
+        "Your function goes wrong where a turn, a distance or a difference is small, and is right everywhere else.",
+        "Is something small taken for nothing, by a tolerance? Do without that special case, or keep it for exact zeros.",
+    ),
+    "digits-lost": (
+        "Your function goes wrong where distances are large, and is right everywhere else.",
+        "Is a tolerance relative to the size of the numbers (`rtol`, `rcond`), or are they kept in single precision?",
     ),
     "sign-slip": (
         "All numbers have the right size, but some have the wrong sign.",

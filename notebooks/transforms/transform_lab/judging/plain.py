@@ -9,12 +9,16 @@ class PlainCase(TypedDict):
     """The arguments of one call, with the right answer to them and the wrong ones.
 
     family: which kind of case it is, in a student's words
-    wrong: what each misconception of the exercise would answer: null where it happens to be right, {"raises": name of the
-        exception} where it raises, {"any": parts of the answer} where these may be anything; left out where only right
-        answers are told (public_example.py)
+    special: what is special of its arguments: some of "integers", "half turn", "small" and "far"
+    wrong: what each misconception of the exercise would answer: null where it happens to be right; else a list with the
+        fingerprint of each part of the answer (see kinds.Part), null for a part that is right; {"unfit": plain data} where it is
+        no answer of the kind, {"raises": name of the exception} where it raises, {"any": [parts of the answer]} where these may
+        be anything, {"not": [parts]} where each of these is wrong, in whatever way. Left out where only right answers are told
+        (public_example.py)
     """
 
     family: str
+    special: list[str]
     args: list[Plain]
     kwargs: dict[str, Plain]
     expected: Plain
@@ -55,5 +59,10 @@ def error_of(wrong):
 
 
 def open_parts_of(wrong):
-    """The parts of the answer that may be anything, where a misconception's answer hangs on how it is computed."""
-    return set(wrong.get("any", ())) if isinstance(wrong, dict) else set()
+    """The parts of the answer whose numbers hang on how exactly a misconception computes them."""
+    return set(wrong.get("any", wrong.get("not", ()))) if isinstance(wrong, dict) else set()
+
+
+def has_to_be_wrong(wrong):
+    """Whether these parts are wrong, each of them, whatever they are; else they may be anything."""
+    return isinstance(wrong, dict) and "not" in wrong

@@ -5,11 +5,13 @@ from itertools import combinations
 import numpy as np
 
 from . import codec
-from .answers import alike, parts_of
+from .answers import WRONG, as_told, parts_of
 from .kinds import KINDS, TOLERANCE
 from .naming import GENERAL, Diagnosis, joined, shared
-from .plain import error_of, open_parts_of
-from .reading import Unfit
+from .plain import has_to_be_wrong, open_parts_of
+
+OPEN = object()  # a part of an answer that may be anything
+WRONG = object()  # one that is wrong, in whatever way
 
 
 def part_by_part(exercise, outcomes):
@@ -34,22 +36,20 @@ def part_by_part(exercise, outcomes):
 def _partial_explanations(exercise, outcomes):
     """{parts that they touch: [misconceptions that explain the answers in these parts]}"""
     parts, found, loosely = KINDS[exercise["returns"]].parts, {}, {}
-    expected = [parts_of(exercise["returns"], codec.decode(case["expected"])) for case in exercise["cases"]]
     for index, misconception in enumerate(exercise["misconceptions"]):
-        wrong = _parts_of_misconception(index, exercise, expected)
-        touched = frozenset(
-            name
-            for answer, right in zip(wrong, expected)
-            for name, part in parts.items()
-            if answer[name] is None or not part.agree(answer[name], right[name])
-        )
+        told = [_of_each_part(case["wrong"][index], parts) for case in exercise["cases"]]
+        if None in told:
+            continue
+        touched = frozenset(name for one in told for name, what in one.items() if what is not None)
         if touched and all(
-            answer[name] is None or alike(parts[name], outcome.got[name], answer[name])
-            for outcome, answer in zip(outcomes, wrong)
+            one[name] is OPEN
+            or (name not in outcome.parts if one[name] is WRONG else as_told(parts[name], name, one[name], outcome))
+            for outcome, one in zip(outcomes, told)
             for name in touched
         ):
-            exact = all(part is not None for answer in wrong for part in answer.values())
+            exact = not any(what is OPEN for one in told for what in one.values())
             (found if exact else loosely).setdefault(touched, []).append(misconception)
+    expected = [parts_of(exercise["returns"], codec.decode(case["expected"])) for case in exercise["cases"]]
     for name, part in parts.items():
         pairs = [(outcome.got[name], right[name]) for outcome, right in zip(outcomes, expected)]
         for identifier, fits in (("not-normalised", _not_normalised), ("rounded", _rounded)):
@@ -59,24 +59,17 @@ def _partial_explanations(exercise, outcomes):
     return loosely | found
 
 
-def _parts_of_misconception(index, exercise, expected):
-    """This misconception's answers, each as its parts, None for one that may be anything.
+def _of_each_part(wrong, parts):
+    """What the key tells of a misconception's answer, {part: None where it is right, its fingerprint, OPEN, WRONG}.
 
-    Nothing when one of the answers cannot be taken apart.
+    None for an answer that cannot be taken apart.
     """
-    answers = []
-    for case, right in zip(exercise["cases"], expected):
-        wrong = case["wrong"][index]
-        if error_of(wrong):
-            return []
-        if open_parts := open_parts_of(wrong):
-            answers.append({part: None if part in open_parts else value for part, value in right.items()})
-            continue
-        try:
-            answers.append(right if wrong is None else parts_of(exercise["returns"], codec.decode(wrong)))
-        except Unfit:
-            return []
-    return answers
+    if open_parts := open_parts_of(wrong):
+        what = WRONG if has_to_be_wrong(wrong) else OPEN
+        return {name: what if name in open_parts else None for name in parts}
+    if isinstance(wrong, dict):
+        return None
+    return dict(zip(parts, wrong or [None] * len(parts)))
 
 
 def _not_normalised(part, pairs):

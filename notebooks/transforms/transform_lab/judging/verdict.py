@@ -13,7 +13,7 @@ import numpy as np
 from . import codec
 from .answers import alike, parts_of
 from .diagnosis import REMEMBERS, constant, diagnose
-from .kinds import KINDS
+from .kinds import EARLIER_ANSWER, KINDS
 from .plain import Plain, PlainCase, PlainExercise
 from .reading import Unfit
 from .status import refuse_unknown
@@ -30,6 +30,7 @@ class Reply:
     arguments: Plain = None  # the positional and keyword arguments after the call, as plain data: [list, dict]
     error: str = ""  # the student's own error, or why the call had to be stopped; in one line
     printed: str = ""  # the beginning of what it printed
+    same_object: str = ""  # ARGUMENT or EARLIER_ANSWER (kinds.py), when the answer is no object of its own
 
     @property
     def finished(self) -> bool:
@@ -44,14 +45,18 @@ class Outcome:
     parts: frozenset = frozenset()  # the parts of the answer that are right
     answered: bool = False  # all of them are
     got: dict | None = None  # the answer's parts; None when nothing could be compared
-    problem: tuple | None = (
-        None  # why not, or that there is NaN in it: (id of a general misconception or "", what came)
-    )
-    mutated: bool = False  # the call changed its arguments, which costs half of what the case earns
+    problem: tuple | None = None  # why not, or that NaN is in it: (id of a general misconception or "", what came)
+    mutated: bool = False  # the call changed its arguments
+    same_object: str = ""  # as in the Reply, where the answer has to be an object of its own
+
+    @property
+    def untouched(self) -> bool:
+        """Whether the call left everything else as it was, and its answer to its caller."""
+        return not self.mutated and not self.same_object
 
     @property
     def right(self) -> bool:
-        return self.answered and not self.mutated
+        return self.answered and self.untouched
 
 
 @dataclass
@@ -108,6 +113,9 @@ def examine(
         if not reply.finished:
             return _unfinished(name, reply, case)
         answered.append((case, reply, compare(returns, case, reply)))
+    if any(outcome.same_object == EARLIER_ANSWER for _, _, outcome in answered):  # then so is the first one
+        for _, _, outcome in answered:
+            outcome.same_object = EARLIER_ANSWER
     right = all(outcome.right for _, _, outcome in answered)
     remembers = not right and again is not None and _differ(returns, answered[0], again())
     if not right:
@@ -203,7 +211,8 @@ def compare(returns: str, case: PlainCase, reply: Reply) -> Outcome:
     parts = KINDS[returns].parts
     good = frozenset(name for name, part in parts.items() if part.agree(got[name], expected[name]))
     problem = None if all(np.isfinite(value).all() for value in got.values()) else ("not-finite", "NaN or infinity")
-    return Outcome(good, len(good) == len(parts), got, problem, mutated)
+    same = "" if KINDS[returns].own(reply.same_object) else reply.same_object
+    return Outcome(good, len(good) == len(parts), got, problem, mutated, same)
 
 
 def _credit(exercise: PlainExercise, cases: list[PlainCase], outcomes: list[Outcome]) -> float:
@@ -221,6 +230,6 @@ def _credit(exercise: PlainExercise, cases: list[PlainCase], outcomes: list[Outc
         parts = frozenset.intersection(*(member.parts for member in members))
         complete = all(member.answered for member in members)
         share = 1.0 if complete else sum(exercise["credit"].get(part, 0.0) for part in parts)
-        untouched = not any(member.mutated for member in members)
+        untouched = all(member.untouched for member in members)
         earned += exercise["weights"][family] * share * (1.0 if untouched else 0.5)
     return earned / sum(exercise["weights"][family] for family in families)
