@@ -11,7 +11,6 @@ from .naming import GENERAL, Diagnosis, joined, shared
 from .plain import has_to_be_wrong, open_parts_of
 
 OPEN = object()  # a part of an answer that may be anything
-WRONG = object()  # one that is wrong, in whatever way
 
 
 def part_by_part(exercise, outcomes):
