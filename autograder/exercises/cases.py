@@ -51,7 +51,7 @@ def half_turn_to_rounding(rng):
     while True:
         axis = slanted_axis(rng)
         R = (2.0 * np.outer(axis, axis) - np.eye(3)).round(15)
-        if np.arccos((np.trace(R) - 1.0) / 2.0) < np.pi:
+        if (np.trace(R) - 1.0) / 2.0 > -1.0:
             return R
 
 

@@ -1,8 +1,10 @@
 """The grader is proven right: no wrong solution passes, no right one fails, and misconceptions get their own name.
 
-For every exercise, for its public cases and for the hidden cases of 200 seeds (of one, among the quick tests):
+For every exercise, for its public cases and for the hidden cases of 50 seeds (of one, among the quick tests):
 
 - every misconception is caught; on every tenth seed it is also named by its own id alone
+- there is a case in every band of every feature that the exercise declares
+- every shortcut that is generated from the features is caught, unless it is declared as equivalent
 - every syntactic mutant of the reference, and of the solution in the notebook, is caught, unless the specification
   declares it as equivalent
 - every right solution of `solutions/` is accepted, and every wrong one refused
@@ -19,6 +21,7 @@ from transform_lab.judging.verdict import examine
 from autograder.course import Course
 from autograder.exercises import EXERCISES, PUBLIC_SEED, key
 from autograder.proving.adequacy import NAMED_EVERY, measure, misnamed, quiet, refused, seeds, slips_through
+from autograder.proving.bands import empty_bands
 from autograder.proving.solutions import made_no_longer, notebook_solution, to_be_tried
 
 every_exercise = pytest.mark.parametrize("name", EXERCISES)
@@ -27,10 +30,11 @@ every_exercise = pytest.mark.parametrize("name", EXERCISES)
 @every_exercise
 def test_adequacy(name, thorough):
     exercise, course = EXERCISES[name], Course(ROOT)
-    drawn_from = seeds(201 if thorough else 2)
+    drawn_from = seeds(51 if thorough else 2)
     tried = to_be_tried(course, exercise)
     assert notebook_solution(course, name) and {"misconception", "mutant", "right"} <= {each.kind for each in tried}
     assert not made_no_longer(exercise, tried), "declared as equivalent, and made no longer"
+    assert not empty_bands(exercise, drawn_from)
     found = measure(exercise, tried, drawn_from, named=drawn_from[::NAMED_EVERY])
     said = []
     for each, what in zip(tried, found):

@@ -107,7 +107,7 @@ def test_what_a_public_case_shows_as_well_is_said(course, hand_in, sandboxed):
     notebook = nbformat.read(course.source / f"{ONE}.ipynb", as_version=4)
     bodies = {
         "is_rotation": "def is_rotation(R):\n    raise ValueError('not today')",
-        "same_rotation": "def same_rotation(q1, q2):\n    raise ValueError(repr(q1))",
+        "same_rotation": "def same_rotation(q1, q2):\n    raise ValueError(repr(q1 * np.random.random()))",
         "rotation_about_z": "def rotation_about_z(degrees):\n    return nowhere * degrees",
     }
     for exercise, source in bodies.items():
@@ -116,7 +116,7 @@ def test_what_a_public_case_shows_as_well_is_said(course, hand_in, sandboxed):
     assert run(course, "grade", "--no-feedback")[0] == 0
     text = (course.autograded("ann") / f"{ONE}.ipynb").read_text()
     assert "ValueError: not today, in your line 2: `raise ValueError('not today')`" in text
-    assert "raised an error: ValueError, in your line 2: `raise ValueError(repr(q1))`" in text
+    assert "raised an error: ValueError, in your line 2: `raise ValueError(repr(q1 * np.random.random()))`" in text
     assert "NameError: name 'nowhere' is not defined" in text
 
 

@@ -144,7 +144,7 @@ def test_errors_are_counted_whatever_their_message(said):
         return wrong(matrix) if matrix[0, 0] < -0.5 else to_pose(matrix)
 
     text, _ = failing("transform_to_pose", wrong_sometimes, said)
-    assert re.search(r"raised an error in \d+ of 42 cases", text)
+    assert re.search(r"raised an error in \d+ of \d+ cases", text)
 
 
 def test_the_forgotten_fourth_coordinate_is_explained(said):
@@ -203,7 +203,7 @@ def test_answers_that_look_alike_show_how_far_apart_they_are(said):
         (
             "make_transform",
             lambda R, p: np.vstack((np.column_stack((R, 0 * p)), [0, 0, 0, 1])),
-            "translation: off by 1.",
+            "translation: off by 3.74 m",
         ),
         ("transform_point", lambda T, p: T[:3, 3], "   off by "),
         ("transform_to_pose", lambda T: Pose(Point(*T[:3, 3]), Quaternion()), "no orientation: all four numbers are 0"),

@@ -242,7 +242,7 @@ def test_check_takes_a_new_kind(checked):
     shown, failed = checked(IS_IN_RADIANS)
     assert IN_RADIANS in shown["text/plain"] and IN_RADIANS in shown["text/html"]
     shown, failed = checked(IS_NO_NUMBER)
-    assert "an array of shape (1,) instead of a number of degrees." in shown["text/plain"]
+    assert "a list of shape (1,) instead of a number of degrees." in shown["text/plain"]
 
 
 @pytest.mark.parametrize(

@@ -90,11 +90,12 @@ def _explain(name, exercise, replies, outcomes, tell):
     found = Diagnosis() if any(outcome.got is None for outcome in outcomes) else part_by_part(exercise, outcomes)
     if found.ids:
         return found
-    place = by_place(exercise, outcomes)
+    mutated = any(outcome.mutated for outcome in outcomes)  # what is wrong may come from the changed argument alone
+    place = Diagnosis() if mutated else by_place(exercise, outcomes)
     if any(outcome.problem for outcome in outcomes):
         found = _general(name, exercise, replies, outcomes, tell)
         return found if found.ids else found._replace(ids=place.ids, hint=place.hint or found.hint)
-    if any(outcome.mutated for outcome in outcomes):  # what is wrong may come from the changed argument alone
+    if mutated:
         return found
     return place if place.ids else by_shape(exercise, outcomes)
 

@@ -18,9 +18,10 @@ SORTS = {
 
 def by_place(exercise, outcomes):
     """The Diagnosis of answers that are wrong in special cases alone."""
-    failing = [case for case, outcome in zip(exercise["cases"], outcomes) if not outcome.answered]
+    special = [case.get("special", ()) for case in exercise["cases"]]
+    failing = [sorts for sorts, outcome in zip(special, outcomes) if not outcome.answered]
     for sort, identifier in SORTS.items():
-        share = sum(sort in case["special"] for case in exercise["cases"]) / len(exercise["cases"])
-        if all(sort in case["special"] for case in failing) and share ** len(failing) < BY_CHANCE:
+        share = sum(sort in sorts for sorts in special) / len(special)
+        if all(sort in sorts for sorts in failing) and share ** len(failing) < BY_CHANCE:
             return general(identifier)
     return Diagnosis()

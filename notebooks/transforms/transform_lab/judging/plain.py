@@ -18,7 +18,7 @@ class PlainCase(TypedDict):
     """
 
     family: str
-    special: list[str]
+    special: NotRequired[list[str]]
     args: list[Plain]
     kwargs: dict[str, Plain]
     expected: Plain
