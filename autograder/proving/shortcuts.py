@@ -18,6 +18,7 @@ THRESHOLDS = [10.0**decade for decade in range(-5, 1)]  # below them a measure i
 CEILINGS = [10.0**decade for decade in range(1, 4)]  # above these
 TOLERANCES = (0.01, 0.1, 10, 100)  # times the right one
 DECIMALS = range(1, 6)
+PARTS = {"transform": ("rotation", "translation"), "pose": ("position", "orientation")}  # of answers that have several
 
 
 def shortcuts(exercise):
@@ -36,25 +37,25 @@ def _beyond_thresholds(exercise, feature):
     found = {}
     if feature.dropped is None:
         return found
-    sizes = [name for name in feature.bands if name.startswith("1e")]
-    smallest, largest = (min, max)
-    reach = [feature.bands[name] for name in sizes]
-    low, high = (smallest(low for low, _ in reach), largest(high for _, high in reach)) if reach else (0.0, 0.0)
     felt = _felt_in(exercise, feature)
-    limits = [(0.0, t, "below") for t in THRESHOLDS if low < t < high] + [
-        (t, np.inf, "above") for t in CEILINGS if low < t < high
-    ]
-    if not sizes:  # a sign
-        limits = [(-np.inf, 0.0, "negative")]
-    for bottom, top, side in limits:
-        told = side if side == "negative" else f"{side} {top if side == 'below' else bottom:g}"
+    for low, high, told in _limits(feature):
 
-        def answer(arguments, bottom=bottom, top=top):
-            return _call(exercise, feature.without(arguments, bottom, top))
+        def answer(arguments, low=low, high=high):
+            return _call(exercise, feature.without(arguments, low, high))
 
         label = f"{feature.name} {told}, taken for {feature.taken_for}"
         found |= _wholly_and_in_parts(exercise, label, answer, felt)
     return found
+
+
+def _limits(feature):
+    """[(lowest, highest measure that is dropped, what this is in words)]"""
+    reach = [limits for name, limits in feature.bands.items() if name.startswith("1e")]
+    if not reach:  # a sign
+        return [(-np.inf, 0.0, "negative")]
+    lowest, highest = reach[0][0], reach[-1][1]
+    below = [(0.0, limit, f"below {limit:g}") for limit in THRESHOLDS if lowest < limit < highest]
+    return below + [(limit, np.inf, f"above {limit:g}") for limit in CEILINGS if lowest < limit < highest]
 
 
 def _felt_in(exercise, feature):
@@ -79,9 +80,6 @@ def _wholly_and_in_parts(exercise, label, answer, parts):
         return lambda *args, **kwargs: _mixed(exercise.reference(*args, **kwargs), wholly(*args, **kwargs), part)
 
     return {label: wholly} | {f"{label} (in the {part} alone)": in_part(part) for part in parts}
-
-
-PARTS = {"transform": ("rotation", "translation"), "pose": ("position", "orientation")}
 
 
 def _mixed(right, wrong, part):
