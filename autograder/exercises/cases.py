@@ -143,6 +143,17 @@ def at_right_angles(*turned):
     return np.linalg.svd([axis / np.linalg.norm(axis) for axis in axes])[2][-1]
 
 
+def with_its_turn(T, p):
+    """The transform, its translation turned round where need be: it adds to what the turn does to p, and hides it not."""
+    by_turning = T[:3, :3] @ p - p
+    return transform(T[:3, :3], np.copysign(1.0, by_turning @ T[:3, 3]) * T[:3, 3])
+
+
+def small_with_points(rng):
+    """(T, p): each of the `small_transforms`, and a point that it moves far, for its size."""
+    return [(with_its_turn(T, at_right_angles(T)), at_right_angles(T)) for T in small_transforms(rng)]
+
+
 def seen_from_afar(rng, decades=SMALL):
     """(a_T_b, p_in_b): B is tilted and far from A, the point p near A's origin; its distance is in each of the decades.
 

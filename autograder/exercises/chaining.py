@@ -9,7 +9,6 @@ from transform_lab.judging.naming import together
 
 from .cases import (
     almost_half_turns,
-    at_right_angles,
     either_sign,
     generic_pose,
     generic_transform,
@@ -29,6 +28,7 @@ from .cases import (
     signed_permutations,
     small_transforms,
     small_turns,
+    small_with_points,
     tilt,
     transform,
     vector,
@@ -82,7 +82,7 @@ def chain_cases(rng):
         "three transforms": [(first, second, third), (second, third, first), (third, third, third)],
         "four to six transforms": [some(4), (first, second, still, third, second), some(6), (first,) * 4],
         "frames hardly turned and hardly moved": [
-            *((T, transform(rotation(rng), at_right_angles(T))) for T in small), (*some(1), small[0]), tuple(small),
+            *((T, transform(rotation(rng), p)) for T, p in small_with_points(rng)), (*some(1), small[0]), tuple(small),
         ],
         "frames far away and close by": [
             (transform(tilt(rng), vector(rng, 50.0)), transform(half_turn(rng), vector(rng, 0.01))),
@@ -338,6 +338,7 @@ def transform_pose_cases(rng):
             (transform(np.eye(3), vector(rng)), generic_pose(rng)),
             (np.eye(4), generic_pose(rng)),
             (generic_transform(rng), pose(np.eye(3), np.zeros(3))),
+            (generic_transform(rng), pose_of(vector(rng), (0.5, 0.5, -0.5, 0.5))),  # its trace is 0
         ],
         "frames turned by more than 120 degrees": [
             (transform(R, vector(rng)), pose(S, vector(rng)))
@@ -355,7 +356,7 @@ def transform_pose_cases(rng):
             *((transform(np.eye(3), vector(rng)), pose(R, vector(rng))) for R in half_turns_about_almost_an_axis()),
         ],
         "frames hardly turned and hardly moved": [
-            *((T, pose(R, at_right_angles(T))) for T, R in zip(small_transforms(rng), small_turns(rng))),
+            *((T, pose(R, p)) for (T, p), R in zip(small_with_points(rng), small_turns(rng))),
             *((transform(rotation(rng), vector(rng)), pose(R, p)) for R, p in zip(small_turns(rng), near(rng))),
         ],
         "frames far away and close by": [

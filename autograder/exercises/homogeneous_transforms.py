@@ -8,7 +8,6 @@ from transform_lab.judging.naming import together
 
 from .cases import (
     almost_half_turns,
-    at_right_angles,
     either_sign,
     far,
     half_turn,
@@ -27,8 +26,8 @@ from .cases import (
     rotation_about,
     seen_from_afar,
     signed_permutations,
-    small_transforms,
     small_turns,
+    small_with_points,
     tilt,
     transform,
     vector,
@@ -759,7 +758,7 @@ def transform_point_cases(rng):
             (transform(rotation(rng), vector(rng)), y_axis),
             (transform(tilt(rng), vector(rng)), z_axis),
         ],
-        "a frame hardly turned and hardly moved": [(T, at_right_angles(T)) for T in small_transforms(rng)],
+        "a frame hardly turned and hardly moved": small_with_points(rng),
         "a point near B's origin, or in it": [
             (transform(tilt(rng), vector(rng)), np.zeros(3)), *((transform(rotation(rng), vector(rng)), p) for p in near(rng)),
         ],

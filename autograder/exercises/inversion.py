@@ -20,12 +20,14 @@ from .cases import (
     size,
     small_transforms,
     small_turns,
+    small_with_points,
     tilt,
     transform,
     vector,
     whole,
     wide_turn,
     with_bottom_row,
+    with_its_turn,
 )
 from .conversions import BY_TRACE, near_half_turns, rotation_vector
 from .equivalent import WHOLE_STAY_WHOLE
@@ -255,7 +257,7 @@ def relative_transform_cases(rng):
         ],
         "a frame hardly turned and hardly moved, or not at all": [
             (np.eye(4), B), (C, np.eye(4)), *zip(small_transforms(rng), small_transforms(rng)),
-            *((T, transform(rotation(rng), at_right_angles(T))) for T in small_transforms(rng)),
+            *((T, transform(rotation(rng), p)) for T, p in small_with_points(rng)),
         ],
         "one frame in whole numbers": [(whole_numbers, C), (B, whole_numbers)],
     }  # fmt: skip
@@ -488,10 +490,11 @@ def object_in_gripper_cases(rng):
             (np.eye(4), G, p), (C, np.eye(4), p),
         ],
         "camera and gripper hardly turned and hardly moved": [
-            (camera, gripper, at_right_angles(camera, gripper))
+            (with_its_turn(camera, p), with_its_turn(gripper, p), p)
             for camera, gripper in zip(small_transforms(rng), small_transforms(rng))
+            for p in [at_right_angles(camera, gripper)]
         ],
-        "camera and gripper close to each other": [(G, G @ T, at_right_angles(T)) for T in small_transforms(rng)],
+        "camera and gripper close to each other": [(G, G @ T, p) for T, p in small_with_points(rng)],
         "the object close to the camera": [(C, generic_transform(rng), p) for p in near(rng)],
         "camera, gripper and object far away": [
             (transform(tilt(rng), vector(rng, 20.0)), transform(tilt(rng), vector(rng, 30.0)), vector(rng, 50.0)),

@@ -12,6 +12,7 @@ from .cases import (
     FAR,
     SMALL,
     almost_half_turns,
+    at_right_angles,
     either_sign,
     far,
     from_roll_pitch_yaw,
@@ -102,6 +103,12 @@ def _far(rng):
     return either_sign([pose(R, p) for R, p in zip((tilt(rng), wide_turn(rng), tilt(rng)), far(rng))])
 
 
+def _across(object_pose):
+    """A step of 2 m at right angles to the axis that the object is turned about, if it is turned."""
+    R = matrix(object_pose)[:3, :3]
+    return 2.0 * (np.eye(3)[0] if np.array_equal(R, np.eye(3)) else at_right_angles(R))
+
+
 def pre_grasp_cases(rng):
     tilted, others = _tilted(rng), _tilted(rng)
     odd = rng.uniform(0.111, 0.119)  # no whole number of centimetres
@@ -136,8 +143,8 @@ def waypoint_cases(rng):
         *(Case("a step along one axis of a tilted object, or none", args) for args in zip(tilted, 0.1 * np.eye(4, 3))),
         Case("a step along one axis of a tilted object, or none", (tilted[4], np.array([1, 0, -2]))),
         *(Case("a short step", (pose(rotation(rng), vector(rng)), step)) for step in near(rng)),
-        *(Case("an object that is almost turned by a half turn", (p, vector(rng))) for p in _almost_half_turned(rng)),
-        *(Case("an object hardly turned, almost at the base", (p, vector(rng, 3.0))) for p in _hardly_turned(rng)),
+        *(Case("an object that is almost turned by a half turn", (p, _across(p))) for p in _almost_half_turned(rng)),
+        *(Case("an object hardly turned, almost at the base", (p, _across(p))) for p in _hardly_turned(rng)),
         *(Case("an object far away, and long steps", args) for args in zip(_far(rng), (vector(rng, 0.01), *far(rng)[:2]))),
         *(
             Case("an object far away, and long steps", (pose(T[:3, :3], T[:3, 3]), p))

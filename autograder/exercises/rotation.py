@@ -883,7 +883,7 @@ def _longer_than_1(rng):
 def _around_zeros(q):
     """Pairs that differ in one number alone, which is 0 in q: 2e-7 in the one and -2e-7 in the other, or by too much."""
     sizes = ALIKE, -ALIKE, TOO_FAR, -TOO_FAR
-    off = [*((by, sign) for by in sizes for sign in (1, -1)), (10 * TOO_FAR, 1), (100 * TOO_FAR, -1)]
+    off = [*((by, sign) for by in sizes for sign in (1, -1)), *((10**n * TOO_FAR, (-1) ** n) for n in range(1, 5))]
     for number, (by, sign) in itertools.product(np.flatnonzero(q == 0), off):
         one, other = (q + half * np.eye(4)[number] for half in (by / 2, -by / 2))
         yield one / np.linalg.norm(one), sign * other / np.linalg.norm(other)
