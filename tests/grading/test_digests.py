@@ -71,7 +71,7 @@ PAGES_ALONE = [
 GRADES = [
     ("autograder.exercises.rotation", "rotation_about_z(-degrees)", "rotation_about_z(-2 * degrees)"),
     ("autograder.exercises.rotation", '"degrees-as-radians",', '"wrong-units",'),
-    ("autograder.exercises.cases", "short", "shorter"),
+    ("autograder.exercises.cases", "rng.uniform(6.0, 7.5)", "rng.uniform(6.0, 7.0)"),
     ("autograder.sandbox.bounds", "call: float = 3.0", "call: float = 2.0"),
     ("autograder.sandbox.executor", "random.seed()", "random.seed(1)"),
     ("autograder.sandbox.forkserver", "LAST_CAPABILITY = 63", "LAST_CAPABILITY = 62"),
