@@ -320,7 +320,8 @@ def test_what_has_a_name_is_not_called_by_its_shape(name, thorough):
     """Names by the shape of the error are for what no misconception explains."""
     for misconception in EXERCISES[name].misconceptions:
         for seed in SEEDS[: 3 if thorough else 1]:
-            assert not set(judged(name, misconception.wrong, seed).misconceptions) & set(SEEN), misconception.id
+            called = set(judged(name, misconception.wrong, seed).misconceptions)
+            assert called & set(SEEN) <= set(misconception.id.split(";")), misconception.id
 
 
 def _entries(name):
