@@ -132,8 +132,9 @@ def details_of(said, beginning):
 def test_the_table_counts(said):
     row = next(line for line in said.splitlines() if line.startswith("raised "))
     numbers = re.findall(r"\d+ of \d+|\S+", row)
-    assert numbers[:3] == ["raised", "3 of 4", "1 of 4"]
-    assert numbers[4:] == ["1 of 2", "2 of 3", "0 of 1", said.split()[-2]]
+    assert numbers[:5] == ["raised", "3", "0", "3 of 4", "1 of 4"]
+    assert numbers[7:] == ["1 of 2", "2 of 4", said.split()[-2]]
+    assert re.search(r"the answer in the type of p +0 of 1", said)
     assert re.search(r"only-up \(2\) +nothing", said)
     assert re.search(r"wrong-sign \(1\) +all families +by its own name", said)
 
@@ -163,6 +164,12 @@ def test_what_slips_through_is_said_with_a_case_that_closes_it(scratch, said, sl
     assert survivors and all("No case found" in details for details in survivors)
 
 
+def test_shortcuts_of_one_kind_are_said_together(said):
+    (details,) = (details for point, details in paragraphs(said) if point.startswith("raised: 5 shortcuts, not caught"))
+    for limit in ("1e-05", "0.0001", "0.001", "0.01", "0.1"):
+        assert f"numbers of the answer below {limit} taken for 0" in details
+
+
 def test_what_no_case_tells_apart_may_be_declared(said):
     (details,) = (details for _, details in paragraphs(said) if "cell raised-solution, line 5:" in details)
     assert "No case found that tells it apart: perhaps it is equivalent." in details
@@ -178,8 +185,8 @@ def test_a_declaration_that_is_wrong_is_said(said):
 
 
 def test_other_names_and_refused_solutions_are_said(said):
-    assert details_of(said, "the misconception one (3) is called nothing")
-    assert details_of(said, "the misconception other (4) is called nothing")
+    assert details_of(said, "the misconception one (3) is called entry-slip")
+    assert details_of(said, "the misconception other (4) is called entry-slip")
     (details,) = details_of(said, "right (rounded), and refused")
     assert 'Case("a point on the diagonal"' in details
     assert "right (plus)" not in said and "the notebook's solution" not in said and "only-up (2) is called" not in said
@@ -192,7 +199,7 @@ def test_nothing_is_open_in_an_exercise_of_the_course(capsys, monkeypatch):
     assert said.strip().endswith("Nothing is open.")
     row = next(line for line in said.splitlines() if line.startswith("hand_transform "))
     number = str(len(EXERCISES["hand_transform"].misconceptions))
-    assert row.split()[1:3] == [number, number]
+    assert row.split()[1:5] == ["1", "0", number, number]
 
 
 def test_an_unknown_exercise(capsys, monkeypatch):
