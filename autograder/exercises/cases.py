@@ -42,15 +42,19 @@ def half_turn(rng, largest=None):
     trace is exactly -1 in whatever order it is summed, so a formula that breaks at a half turn breaks in one way only.
     `largest` (0, 1, 2) is the component of the axis that is largest, for formulas that have a branch for each.
     """
-    axis = _with_largest(largest, rng.permutation([0.36, 0.48, 0.8])) * rng.choice([-1.0, 1.0], size=3)
+    return _half_turn_about(
+        _with_largest(largest, rng.permutation([0.36, 0.48, 0.8])) * rng.choice([-1.0, 1.0], size=3)
+    )
+
+
+def _half_turn_about(axis):
     return 2.0 * np.outer(axis, axis) - np.eye(3)
 
 
 def half_turn_to_rounding(rng):
     """A half turn about a slanted axis whose trace is a little more than -1, as it comes out of most computations."""
     while True:
-        axis = slanted_axis(rng)
-        R = (2.0 * np.outer(axis, axis) - np.eye(3)).round(15)
+        R = _half_turn_about(slanted_axis(rng)).round(15)
         if (np.trace(R) - 1.0) / 2.0 > -1.0:
             return R
 
@@ -151,7 +155,8 @@ def with_its_turn(T, p):
 
 def small_with_points(rng):
     """(T, p): each of the `small_transforms`, and a point that it moves far, for its size."""
-    return [(with_its_turn(T, at_right_angles(T)), at_right_angles(T)) for T in small_transforms(rng)]
+    frames = small_transforms(rng)
+    return [(with_its_turn(T, p), p) for T, p in zip(frames, map(at_right_angles, frames))]
 
 
 def seen_from_afar(rng, decades=SMALL):
@@ -169,6 +174,11 @@ def whole(T):
     return T.astype(int)
 
 
+def whole_transform():
+    """A transform of integers, as one types it: quarter turns, and a few metres."""
+    return whole(transform(signed_permutations()[5], (1, -2, 3)))
+
+
 def no_turn(p):
     """Poses at p that are not turned: of the two quaternions for it, the second has w = -1."""
     return [pose_of(p, (0, 0, 0, w)) for w in (1, -1)]
@@ -177,6 +187,13 @@ def no_turn(p):
 def whole_pose():
     """A pose of integers, as one types it: a half turn about x."""
     return Pose(Point(1, -2, 3), Quaternion(1, 0, 0, 0))
+
+
+def is_whole(value):
+    """Whether an array, a Pose or a number is of integers."""
+    if isinstance(value, Pose):
+        return type(value.position.x) is int
+    return value.dtype.kind == "i" if isinstance(value, np.ndarray) else type(value) is int
 
 
 def generic_transform(rng):
@@ -247,11 +264,6 @@ def off_diagonal(R):
 def with_bottom_row(T, row):
     """The transform T, its bottom row another."""
     return np.vstack((T[:3], row))
-
-
-def large_turn(R):
-    """Whether the trace is 0 or less: a turn by 120 degrees or more, where some formulas for a quaternion break."""
-    return np.trace(R) <= 1e-9
 
 
 def x_axis_upright(R):

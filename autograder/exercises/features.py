@@ -102,13 +102,12 @@ SPECIAL = (
 
 def special_of(features, arguments):
     """What is special of arguments, {parameter: value}; see transform_lab.judging.places."""
-    return [
-        what
-        for what, tables, names in SPECIAL
-        if any(
-            feature.bands_of(arguments) & names for feature in features if any(feature.bands is each for each in tables)
-        )
-    ]
+    found = set()
+    for feature in features:
+        if sorts := [(what, names) for what, tables, names in SPECIAL if feature.bands in tables]:
+            lies_in = feature.bands_of(arguments)
+            found |= {what for what, names in sorts if lies_in & names}
+    return [what for what, _, _ in SPECIAL if what in found]
 
 
 def of_differences(parameters, names, differences):
@@ -125,7 +124,7 @@ def of_number(name, bands):
     return (
         Feature((name,), "size", abs, bands, "0", lambda number: (0.0,)),
         Feature((name,), "sign", float, SIGNS, "its size", lambda number: (abs(number),)),
-        Feature((name,), "type", lambda number: isinstance(number, int), TYPES),
+        type_of(name),
     )
 
 
@@ -137,7 +136,7 @@ def of_vector(name):
             Feature((name,), f"sign of {letter}", lambda p, i=index: p[i], SIGNS, "their sizes", lambda p: (abs(p),))
             for index, letter in enumerate("xyz")
         ),
-        type_of_numbers(name),
+        type_of(name),
     )
 
 
@@ -146,7 +145,7 @@ def of_rotation(name, read=lambda R: R, write=lambda R, value: R):
     return (
         Feature((name,), "angle", lambda v: _angle(read(v)), TURNS, "no turn", lambda v: (write(np.eye(3), v),)),
         Feature((name,), "sign of the trace", lambda v: np.trace(read(v)), SIGNS),
-        type_of_numbers(name, read),
+        type_of(name),
     )
 
 
@@ -209,7 +208,7 @@ def of_axes(one, other):
             "no turn",
             lambda x, y: tuple(np.eye(3)[:2]),
         ),
-        *(type_of_numbers(name) for name in (one, other)),
+        *(type_of(name) for name in (one, other)),
     )
 
 
@@ -220,11 +219,10 @@ def _frame(x, y):
 def of_pose(name):
     """Features of a Pose; see of_orientation, too."""
     return (
-        *(feature for feature in of_transform(name) if feature.what != "type"),
+        *of_transform(name),
         Feature(
             (name,), "sign of w", lambda pose: pose.orientation.w, SIGNS, "its size", lambda pose: (_w_positive(pose),)
         ),
-        Feature((name,), "type", lambda pose: type(pose.position.x) is int, TYPES),
     )
 
 
@@ -265,9 +263,9 @@ def _of_translation(feature):
     )  # fmt: skip
 
 
-def type_of_numbers(name, read=lambda value: value):
-    """Whether an array is of integers."""
-    return Feature((name,), "type", lambda value: read(value).dtype.kind == "i", TYPES)
+def type_of(name):
+    """The feature of an array, a Pose or a number: whether it is of integers."""
+    return Feature((name,), "type", cases.is_whole, TYPES)
 
 
 def _matrix(value):

@@ -33,6 +33,7 @@ from .cases import (
     vector,
     whole,
     whole_pose,
+    whole_transform,
     wide_turn,
     with_bottom_row,
     x_axis_upright,
@@ -342,7 +343,7 @@ def transform_to_pose(matrix):
 
 
 def transform_to_pose_cases(rng):
-    whole_numbers = Case("a frame turned by quarter turns", (whole(transform(signed_permutations()[5], (1, -2, 3))),))
+    whole_numbers = Case("a frame turned by quarter turns", (whole_transform(),))
     cases = [Case(family, (transform(R, p),)) for family, frames in many_frames(rng).items() for R, p in frames]
     return [whole_numbers, *cases]
 
@@ -767,7 +768,7 @@ def transform_point_cases(rng):
             *((transform(wide_turn(rng), vector(rng)), p) for p in far(rng)),
         ],
         "frame or point in whole numbers": [
-            (whole(transform(signed_permutations()[5], (1, -2, 3))), vector(rng)),
+            (whole_transform(), vector(rng)),
             (transform(rotation(rng), vector(rng)), np.array([1, -2, 3])),
         ],
     }  # fmt: skip

@@ -25,6 +25,7 @@ from .cases import (
     transform,
     vector,
     whole,
+    whole_transform,
     wide_turn,
     with_bottom_row,
     with_its_turn,
@@ -239,7 +240,7 @@ def relative_transform_cases(rng):
     shuffled = [along_axes[index] for index in rng.permutation(24)]
     R, p = rotation(rng), vector(rng)
     B, C, turned = transform(R, p), generic_transform(rng), transform(tilt(rng), p)
-    whole_numbers = whole(transform(signed_permutations()[5], (1, -2, 3)))
+    whole_numbers = whole_transform()
     families = {
         "frames turned by quarter turns": list(zip(shuffled[:12], shuffled[12:])),
         "two tilted frames": [(B, C), (B, generic_transform(rng)), (turned, C), (B, turned)],
@@ -476,7 +477,7 @@ def object_in_gripper_cases(rng):
     shuffled = [along_axes[index] for index in rng.permutation(24)]
     in_front = np.array([1.0, 0.0, 0.0])
     C, G = transform(tilt(rng), vector(rng)), transform(wide_turn(rng), vector(rng))
-    p, R, whole_numbers = vector(rng), rotation(rng), whole(transform(signed_permutations()[5], (1, -2, 3)))
+    p, R, whole_numbers = vector(rng), rotation(rng), whole_transform()
     families = {
         "an object 1 m in front of the camera": [
             (generic_transform(rng), generic_transform(rng), in_front) for _ in range(3)

@@ -93,6 +93,10 @@ class Exercise:
         if unknown or sum(self.credit.values()) > 1:
             raise ValueError(f"{self.name}: credit {self.credit} does not fit an answer of kind {self.returns}")
 
+    def bound(self, args, kwargs):
+        """The arguments of a call, {parameter: value}; a parameter with a star has a tuple of values."""
+        return dict(signature(self.reference).bind(*args, **kwargs).arguments)
+
 
 def key(exercise: Exercise, seed: int) -> PlainExercise:
     """The exercise with the cases drawn from `seed`, as the plain data that `transform_lab.judging.verdict.examine` takes.
@@ -152,7 +156,7 @@ def _case(exercise: Exercise, case: Case) -> PlainCase:
     given, named = fresh()
     return {
         "family": case.family,
-        "special": special_of(exercise.features, dict(signature(exercise.reference).bind(*given, **named).arguments)),
+        "special": special_of(exercise.features, exercise.bound(given, named)),
         "args": args,
         "kwargs": kwargs,
         "expected": expected,

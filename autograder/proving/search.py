@@ -104,14 +104,13 @@ class Candidates:
     """
 
     def __init__(self, exercise):
-        called = signature(exercise.reference)
-        self.parameters = called.parameters
+        self.parameters = signature(exercise.reference).parameters
         self.rng = np.random.default_rng(PUBLIC_SEED)
         self.own = [
             case for seed in (PUBLIC_SEED, *OTHER_SEEDS) for case in exercise.cases(np.random.default_rng(seed))
         ]
         self.by_name = {name for case in self.own for name in case.kwargs}
-        self.bound = [called.bind(*case.args, **case.kwargs).arguments for case in self.own]
+        self.bound = [exercise.bound(case.args, case.kwargs) for case in self.own]
         true = [_true_of(arguments) for arguments in self.bound]
         self.promised = {
             what

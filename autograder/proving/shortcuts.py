@@ -64,7 +64,7 @@ def _felt_in(exercise, feature):
     felt = set()
     for case in exercise.cases(np.random.default_rng(PUBLIC_SEED)) if feature.in_parts else ():
         right = parts_of(exercise.returns, exercise.reference(*case.args, **case.kwargs))
-        without = feature.without(_bound(exercise, case.args, case.kwargs), -np.inf, np.inf)
+        without = feature.without(exercise.bound(case.args, case.kwargs), -np.inf, np.inf)
         wrong = parts_of(exercise.returns, _call(exercise, without))
         felt |= {part for part in parts if not KINDS[exercise.returns].parts[part].agree(wrong[part], right[part])}
     return [part for part in parts if part in felt] if len(felt) > 1 else []
@@ -74,7 +74,7 @@ def _wholly_and_in_parts(exercise, label, answer, parts):
     """A wrong answer as it is, and with all parts but one put right."""
 
     def wholly(*args, **kwargs):
-        return answer(_bound(exercise, args, kwargs))
+        return answer(exercise.bound(args, kwargs))
 
     def in_part(part):
         return lambda *args, **kwargs: _mixed(exercise.reference(*args, **kwargs), wholly(*args, **kwargs), part)
@@ -98,9 +98,9 @@ def _in_another_type(exercise):
 
     def kept(name):
         def answer(*args, **kwargs):
-            given, right = _bound(exercise, args, kwargs).get(name), exercise.reference(*args, **kwargs)
+            given, right = exercise.bound(args, kwargs).get(name), exercise.reference(*args, **kwargs)
             first = given[0] if isinstance(given, tuple) else given
-            return _each_number(right, np.trunc) if _whole(first) else right
+            return _each_number(right, np.trunc) if cases.is_whole(first) else right
 
         return answer
 
@@ -168,7 +168,8 @@ def _same_objects(exercise):
 
 def _comparisons(exercise):
     """What a predicate compares, with another tolerance, one way only, or not at all; see Exercise.differences."""
-    numbers = len(exercise.differences(*exercise.cases(np.random.default_rng(0))[0].args)[0][0])
+    alternatives, _ = exercise.differences(*exercise.cases(np.random.default_rng(PUBLIC_SEED))[0].args)
+    numbers = len(alternatives[0])
 
     def with_test(test, which=slice(None)):
         def answer(*args, **kwargs):
@@ -196,14 +197,9 @@ def _comparisons(exercise):
             tolerances = np.full(numbers, TOLERANCE)
             tolerances[number] *= factor
             found[f"difference {number + 1} is compared with {tolerances[number]:g}"] = with_test(within(tolerances))
-    alternatives, _ = exercise.differences(*exercise.cases(np.random.default_rng(0))[0].args)
     for index in range(len(alternatives) if len(alternatives) > 1 else 0):
         found[f"alternative {index + 1} alone"] = with_test(within(TOLERANCE), slice(index, index + 1))
     return found
-
-
-def _bound(exercise, args, kwargs):
-    return dict(signature(exercise.reference).bind(*args, **kwargs).arguments)
 
 
 def _call(exercise, arguments):
@@ -215,12 +211,6 @@ def _call(exercise, arguments):
         elif name in arguments:
             kwargs[name] = arguments[name]
     return exercise.reference(*args, **kwargs)
-
-
-def _whole(value):
-    if isinstance(value, Pose):
-        return type(value.position.x) is int
-    return isinstance(value, np.ndarray) and value.dtype.kind == "i" or type(value) is int
 
 
 def _single(value):

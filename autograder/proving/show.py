@@ -111,10 +111,9 @@ def _slipping(proof, root):
     """What slips through; said together: mutants of a line that one case would catch, shortcuts beyond several thresholds."""
     alike = {}
     for each, what in proof.slipping:
-        shortcut = each.kind == "shortcut"
         line = (each.mutant.file, each.mutant.line) if each.mutant else THRESHOLD.sub("…", each.label)
-        alike.setdefault((line, None if shortcut else proof.cases[each.label]), []).append((each, what))
-    for (_, case), group in alike.items():
+        alike.setdefault((line, proof.cases[each.label] if each.mutant else None), []).append((each, what))
+    for group in alike.values():
         each, seeds = group[0][0], _seeds({seed for _, what in group for seed in what.accepted}, proof)
         if each.kind == "mutant":
             yield _point(f"{proof.exercise.name}: {_counted(len(group), 'mutant')} of a line, not caught on {seeds}.")
@@ -122,16 +121,14 @@ def _slipping(proof, root):
         elif each.kind == "shortcut":
             yield _point(f"{proof.exercise.name}: {_counted(len(group), 'shortcut')}, not caught on {seeds}.")
             yield from (_detail(each.label) for each, _ in group)
-            for case in dict.fromkeys(proof.cases[each.label] for each, _ in group):
-                yield from _advice([each for each, _ in group if proof.cases[each.label] == case], case)
-            continue
         elif each.kind == "misconception":
             yield _point(f"{proof.exercise.name}: the misconception {each.label}, not caught on {seeds}.")
         elif each.kind == "cheat":
             yield _point(f"{proof.exercise.name}: a function that {each.label}, accepted on {seeds}.")
         else:
             yield _point(f"{proof.exercise.name}: the wrong solution {each.label}, accepted on {seeds}.")
-        yield from _advice([each for each, _ in group], case)
+        for case in dict.fromkeys(proof.cases[each.label] for each, _ in group):
+            yield from _advice([each for each, _ in group if proof.cases[each.label] == case], case)
 
 
 def _advice(group, case):

@@ -43,10 +43,6 @@ def small_turn_is_none(matrix):
     return pose
 
 
-def same_frame_by_allclose(a_T_b, a_T_c):
-    return np.eye(4) if np.allclose(a_T_b, a_T_c) else right("relative_transform")(a_T_b, a_T_c)
-
-
 def cut_off(a_T_b):
     return np.linalg.pinv(a_T_b, rcond=1e-5)
 

@@ -41,8 +41,7 @@ def _partial_explanations(exercise, outcomes):
             continue
         touched = frozenset(name for one in told for name, what in one.items() if what is not None)
         if touched and all(
-            one[name] is OPEN
-            or (name not in outcome.parts if one[name] is WRONG else as_told(parts[name], name, one[name], outcome))
+            one[name] is OPEN or as_told(parts[name], name, one[name], outcome)
             for outcome, one in zip(outcomes, told)
             for name in touched
         ):

@@ -10,11 +10,8 @@ from .kinds import ARGUMENT, EARLIER_ANSWER
 from .plain import Plain
 from .verdict import Reply
 
-_before: list = [
-    None,
-    None,
-    None,
-]  # the function that was called last, its answer, and what that was then, as plain data
+# The function that was called last, its answer, and what that was then, as plain data
+_before: list = [None, None, None]
 MOST_PRINTED = 200  # characters of what a function prints while it is checked
 
 
