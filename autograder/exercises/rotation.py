@@ -11,6 +11,7 @@ from transform_lab.judging.naming import together
 from .cases import (
     SMALL,
     half_turn,
+    nudged,
     quaternion,
     rotation,
     rotation_about,
@@ -493,6 +494,13 @@ def is_rotation_cases(rng):
     The last ones break one property at a time, by as little as the tolerance allows to ask for, and in ways that are felt to
     second order in all the others.
     """
+
+    def turned():
+        return _rounded(rotation(rng), 2e-11)
+
+    def tilted():
+        return _rounded(tilt(rng), -2e-11)
+
     along_axes = signed_permutations()
     mirror_normal = slanted_axis(rng)
     mirror = np.eye(3) - 2.0 * np.outer(mirror_normal, mirror_normal)
@@ -505,7 +513,7 @@ def is_rotation_cases(rng):
     for R in changed:
         R[rng.integers(3), rng.integers(3)] += 1e-3
 
-    bases = itertools.cycle([rotation(rng), along_axes[rng.integers(24)], half_turn(rng), tilt(rng)])
+    bases = itertools.cycle([turned(), along_axes[rng.integers(24)], half_turn(rng), tilted()])
 
     def some():
         return next(bases)
@@ -513,29 +521,28 @@ def is_rotation_cases(rng):
     decades = TOO_FAR * 10.0 ** np.arange(4)
     families = {
         "a rotation, or a mirror image of one": [
-            rotation(rng), np.eye(3), half_turn(rng), whole(along_axes[rng.integers(24)]),
-            rotation(rng) @ np.diag([1.0, 1.0, -1.0]), -np.eye(3), mirror @ rotation(rng) * (1.0 - 1e-9),
+            turned(), np.eye(3), half_turn(rng), whole(along_axes[rng.integers(24)]),
+            turned() @ np.diag([1.0, 1.0, -1.0]), -np.eye(3), mirror @ turned() * (1.0 - 1e-9),
             whole(-along_axes[rng.integers(24)]),
         ],
         "a rotation, or one with two of its columns swapped": [
-            np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]), rotation(rng).T,
-            np.eye(3)[:, [1, 0, 2]], rotation(rng)[:, [0, 2, 1]],
+            np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]), turned().T,
+            np.eye(3)[:, [1, 0, 2]], turned()[:, [0, 2, 1]],
         ],
         "a rotation, or axes that are not at right angles": [
-            rotation(rng), tilt(rng), shear, rotation(rng) @ shear, leaning.T @ rotation(rng), *two_lean,
+            turned(), tilted(), shear, turned() @ shear, leaning.T @ turned(), *two_lean,
             *(along_axes[rng.integers(24)] @ _all_lean(size) for size in (0.5, -0.3)),
         ],
         "a rotation, or one stretched along one axis and squeezed along another": [
-            rotation(rng), along_axes[rng.integers(24)], stretch, stretch @ rotation(rng), rotation(rng) @ mild,
+            turned(), along_axes[rng.integers(24)], stretch, stretch @ turned(), turned() @ mild,
             *(some() @ _stretched(first, size, -size) for first, size in zip((0, 1, 2, 0), decades)),
         ],
         "a rotation, or one made larger or smaller, as a whole or along one axis": [
-            rotation(rng), tilt(rng), 2.0 * rotation(rng), 0.5 * rotation(rng), 1.01 * rotation(rng), np.zeros((3, 3)),
+            turned(), tilted(), 2.0 * turned(), 0.5 * turned(), 1.01 * turned(), np.zeros((3, 3)),
             *one_long,
         ],
         "a rotation with rounding errors of 1e-9, or one with a number that is off by 0.001": [
-            rotation(rng) + rng.uniform(-1e-9, 1e-9, size=(3, 3)), tilt(rng) + rng.uniform(-1e-9, 1e-9, size=(3, 3)),
-            half_turn(rng) + rng.uniform(-1e-9, 1e-9, size=(3, 3)), *changed,
+            _rounded(rotation(rng), 8e-10), _rounded(tilt(rng), -8e-10), _rounded(half_turn(rng), 8e-10), *changed,
         ],
         "an axis whose length is off by less than 1e-6, or by more": [
             *(some() @ _stretched(axis, sign * SLIGHT) for axis in range(3) for sign in (1, -1)),
@@ -555,6 +562,14 @@ def is_rotation_cases(rng):
         ],
     }  # fmt: skip
     return [Case(family, (R,)) for family, matrices in families.items() for R in matrices]
+
+
+def _rounded(R, by):
+    """A rotation with an error as rounding makes it, but by chance nowhere exact.
+
+    All products of its columns are off by twice as much, and its determinant by three times.
+    """
+    return R @ (np.eye(3) + by)
 
 
 def _stretched(axis, size, next_size=0.0):
@@ -874,10 +889,15 @@ def _shifted(q, by):
 
 def _longer_than_1(rng):
     """A unit quaternion whose product with itself is a little more than 1, in whatever order it is summed."""
-    while True:
-        q = quaternion(rotation(rng)).round(15)
-        if min(q @ q, np.sum(q * q), sum(q * q), sum((q * q)[::-1])) > 1.0:
-            return q
+    q = quaternion(rotation(rng)).round(15)
+    while min(q @ q, np.sum(q * q), sum(q * q), sum((q * q)[::-1])) <= 1.0:
+        q = nudged(q).round(15)
+    return q
+
+
+def _hardly_shorter_than_1(q):
+    """A quaternion whose product with itself is less than 1, as it comes of rounding, in whatever order it is summed."""
+    return np.trunc(q * 1e15) / 1e15
 
 
 def _around_zeros(q):
@@ -898,19 +918,20 @@ def _unequal(q, number, by):
 
 def same_rotation_cases(rng):
     def turn(axis, angle):
-        return quaternion(rotation_about(axis, angle))
+        return _hardly_shorter_than_1(quaternion(rotation_about(axis, angle)))
 
     def nearby(q, size):
         step = rng.normal(size=4)
         step -= (step @ q) * q  # along the unit sphere, so that the result is a unit quaternion too
         moved = q + size * step / np.linalg.norm(step)
-        return moved / np.linalg.norm(moved)
+        return _hardly_shorter_than_1(moved / np.linalg.norm(moved))
 
     def some():
-        return quaternion(rotation(rng)) * rng.choice([-1.0, 1.0])
+        return _hardly_shorter_than_1(quaternion(rotation(rng)) * rng.choice([-1.0, 1.0]))
 
     q = [some() for _ in range(10)]
-    tilted = [quaternion(tilt(rng)) for _ in range(3)]  # far from a half turn, whose opposite is the same rotation
+    # Far from a half turn, whose opposite is the same rotation.
+    tilted = [_hardly_shorter_than_1(quaternion(tilt(rng))) for _ in range(3)]
     axis = slanted_axis(rng)
     other = axis[[1, 2, 0]] * [1, 1, -1]  # the dot product of the two is 0.5 at most
     first_half, second_half = (np.append(a, 0.0) for a in (rng.permutation([0.36, 0.48, 0.8]), (0.0, 0.6, -0.8)))

@@ -18,9 +18,9 @@ from transform_lab.judging.kinds import KINDS, NOT_FINITE
 from transform_lab.judging.plain import PlainCase, PlainExercise, error_of
 from transform_lab.judging.reading import Unfit
 
+from .draws import PUBLIC_SEED, Draws
 from .features import Feature, special_of
 
-PUBLIC_SEED = 24  # the cases students see; any other seed draws hidden ones
 ORDER = 1  # with the seed, what the order of the cases is drawn from
 DIGITS_OF_ARGUMENTS = 15  # decimals: nearly all there are, without the noise that sines and products leave at zero
 DIGITS = 12  # of right answers: far below the tolerance of 1e-6
@@ -60,7 +60,7 @@ class Exercise:
     answer: its name, "b_T_a" or "p_in_a", which tells the frame it is given in; names of parameters do the same. Empty for
         what is given in none, and not drawn
     reference: the right solution
-    cases: from a NumPy random generator to a list of Case; the same families for every seed
+    cases: from Draws, a NumPy random generator, to a list of Case; the same families for every seed
     misconceptions: see Misconception
     credit: what each part of the answer is worth alone; all parts together are worth 1
     weights: how much a family of cases counts; 1 for one that is not here
@@ -74,7 +74,7 @@ class Exercise:
     returns: str
     answer: str
     reference: Callable
-    cases: Callable[[np.random.Generator], list]
+    cases: Callable[[Draws], list]
     misconceptions: tuple = ()
     credit: dict = field(default_factory=dict)
     weights: dict = field(default_factory=dict)
@@ -93,6 +93,10 @@ class Exercise:
         if unknown or sum(self.credit.values()) > 1:
             raise ValueError(f"{self.name}: credit {self.credit} does not fit an answer of kind {self.returns}")
 
+    def drawn(self, seed):
+        """The list of cases of a seed."""
+        return self.cases(Draws(seed))
+
     def bound(self, args, kwargs):
         """The arguments of a call, {parameter: value}; a parameter with a star has a tuple of values."""
         return dict(signature(self.reference).bind(*args, **kwargs).arguments)
@@ -104,7 +108,7 @@ def key(exercise: Exercise, seed: int) -> PlainExercise:
     Hidden cases come in an order of their own, so that a call's number tells nothing about it; public ones, which are read,
     as the specification has them.
     """
-    cases = exercise.cases(np.random.default_rng(seed))
+    cases = exercise.drawn(seed)
     return {
         "parameters": [str(p).partition("=")[0] for p in signature(exercise.reference).parameters.values()],
         "returns": exercise.returns,

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import replace
 
+import numpy as np
 from transform_lab.judging import codec
 
 from ..exercises import PUBLIC_SEED, key
@@ -52,9 +53,22 @@ def cheats(exercise: Exercise) -> dict[str, Callable[[], Callable]]:
 
         return answer
 
-    return {
+    def by_likeness():
+        known = [_numbers(one.fresh()[0]) for one in asked]
+
+        def answer(*args):
+            return answers[np.argmin([np.linalg.norm(_numbers(args) - one) for one in known])]
+
+        return answer
+
+    likeness = {"answers as the most similar public case": by_likeness} if exercise.returns == "truth" else {}
+    return likeness | {
         "answers by position of the public key": by_position,
         "remembers the public cases, and answers others by position": by_table,
         "remembers earlier calls: gives its first answer ever after": first,
         "remembers earlier calls: gives the answer to the call before": before,
     }
+
+
+def _numbers(arrays):
+    return np.concatenate([np.ravel(array) for array in arrays]).astype(float)

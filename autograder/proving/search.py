@@ -82,7 +82,7 @@ def quoted(text):
 
 def code_of(exercise, seed, number):
     """A case that `seed` draws, as code."""
-    return code(exercise.cases(np.random.default_rng(seed))[number])
+    return code(exercise.drawn(seed)[number])
 
 
 def _text(value):
@@ -106,9 +106,7 @@ class Candidates:
     def __init__(self, exercise):
         self.parameters = signature(exercise.reference).parameters
         self.rng = np.random.default_rng(PUBLIC_SEED)
-        self.own = [
-            case for seed in (PUBLIC_SEED, *OTHER_SEEDS) for case in exercise.cases(np.random.default_rng(seed))
-        ]
+        self.own = [case for seed in (PUBLIC_SEED, *OTHER_SEEDS) for case in exercise.drawn(seed)]
         self.by_name = {name for case in self.own for name in case.kwargs}
         self.bound = [exercise.bound(case.args, case.kwargs) for case in self.own]
         true = [_true_of(arguments) for arguments in self.bound]

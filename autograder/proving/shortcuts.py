@@ -62,7 +62,7 @@ def _felt_in(exercise, feature):
     """The parts of the answer that hang on what the feature measures; none when there is but one part."""
     parts = PARTS.get(exercise.returns, ())
     felt = set()
-    for case in exercise.cases(np.random.default_rng(PUBLIC_SEED)) if feature.in_parts else ():
+    for case in exercise.drawn(PUBLIC_SEED) if feature.in_parts else ():
         right = parts_of(exercise.returns, exercise.reference(*case.args, **case.kwargs))
         without = feature.without(exercise.bound(case.args, case.kwargs), -np.inf, np.inf)
         wrong = parts_of(exercise.returns, _call(exercise, without))
@@ -155,7 +155,7 @@ def _same_objects(exercise):
         return answer
 
     found["one object is the answer to every call"] = one_for_all()
-    public = exercise.cases(np.random.default_rng(PUBLIC_SEED))
+    public = exercise.drawn(PUBLIC_SEED)
     if KINDS[exercise.returns].new and any(isinstance(arg, Pose) for case in public for arg in case.args):
 
         def handed_back(*args, **kwargs):
@@ -168,7 +168,7 @@ def _same_objects(exercise):
 
 def _comparisons(exercise):
     """What a predicate compares, with another tolerance, one way only, or not at all; see Exercise.differences."""
-    alternatives, _ = exercise.differences(*exercise.cases(np.random.default_rng(PUBLIC_SEED))[0].args)
+    alternatives, _ = exercise.differences(*exercise.drawn(PUBLIC_SEED)[0].args)
     numbers = len(alternatives[0])
 
     def with_test(test, which=slice(None)):

@@ -3,7 +3,6 @@
 import os
 import re
 
-import numpy as np
 from rich.table import Column, Table
 from rich.text import Text
 
@@ -32,7 +31,7 @@ def summary(proofs, seeds):
         misconceptions = proof.of("misconception")
         table.add_row(
             proof.exercise.name,
-            str(len(proof.exercise.cases(np.random.default_rng(PUBLIC_SEED)))),
+            str(len(proof.exercise.drawn(PUBLIC_SEED))),
             _all_or_some([(f.name, band) not in proof.empty for f in proof.exercise.features for band in f.bands]),
             _share(misconceptions),
             _all_or_some([not misnamed(each, what) for each, what in misconceptions]),

@@ -113,7 +113,7 @@ CONSTANTS = [np.eye(4), np.eye(3), np.zeros((4, 4)), np.zeros((3, 3)), np.zeros(
 @every_seed
 @every_exercise
 def test_a_constant_earns_nothing(name, seed):
-    first = next(iter(EXERCISES[name].cases(np.random.default_rng(seed))))
+    first = next(iter(EXERCISES[name].drawn(seed)))
     known = [] if name == "hand_transform" else [EXERCISES[name].reference(*first.args, **first.kwargs)]
     for constant in CONSTANTS + known:
         assert judged(name, lambda *args, **kwargs: constant, seed).credit == 0.0
@@ -217,7 +217,7 @@ def test_truth_in_other_types_is_right(name):
 
 
 def first_case(name):
-    return EXERCISES[name].cases(np.random.default_rng(PUBLIC_SEED))[0]
+    return EXERCISES[name].drawn(PUBLIC_SEED)[0]
 
 
 def can_be_changed(arg):
@@ -260,7 +260,7 @@ def test_keys_are_plain_data_and_follow_from_the_seed(name):
 def test_arguments_have_the_promised_types(name):
     parameters = list(signature(EXERCISES[name].reference).parameters)
     for seed in SEEDS:
-        for case in EXERCISES[name].cases(np.random.default_rng(seed)):
+        for case in EXERCISES[name].drawn(seed):
             named = [*zip(parameters, case.args), *case.kwargs.items()] if len(case.args) <= len(parameters) else []
             for parameter, arg in named or [("", arg) for arg in case.args]:  # chain(*transforms) takes any number
                 if isinstance(arg, np.ndarray):
@@ -277,7 +277,7 @@ def test_arguments_have_the_promised_types(name):
 
 def test_truths_are_far_from_the_tolerance():
     for seed in range(100):
-        for case in EXERCISES["is_rotation"].cases(np.random.default_rng(seed)):
+        for case in EXERCISES["is_rotation"].drawn(seed):
             R = case.args[0]
             if np.linalg.det(R) < 0:
                 continue
@@ -286,7 +286,7 @@ def test_truths_are_far_from_the_tolerance():
             assert (
                 off < 0.35 * TOLERANCE and nearest < 0.25 * TOLERANCE or off > 4 * TOLERANCE and nearest > 2 * TOLERANCE
             )
-        for case in EXERCISES["same_rotation"].cases(np.random.default_rng(seed)):
+        for case in EXERCISES["same_rotation"].drawn(seed):
             q1, q2 = case.args
             off = min(np.abs(q1 - q2).max(), np.abs(q1 + q2).max())
             angle = 2 * np.arcsin(
@@ -313,7 +313,7 @@ def test_every_family_of_truths_has_no_single_answer_but_negatives():
 def test_rotations_of_all_kinds_reach_transform_to_pose():
     for seed in SEEDS:
         traces, exact = [], set()
-        for case in EXERCISES["transform_to_pose"].cases(np.random.default_rng(seed)):
+        for case in EXERCISES["transform_to_pose"].drawn(seed):
             R = case.args[0][:3, :3]
             assert np.allclose(R.T @ R, np.eye(3), atol=1e-12) and np.linalg.det(R) > 0
             traces.append(np.trace(R))
@@ -339,16 +339,16 @@ def test_quaternions_of_either_sign_are_arguments():
     negated = Pose(Point(1, 2, 3), Quaternion(-0.5, -0.5, 0.5, -0.5))
     assert either_sign([negated, pose, pose]) == [pose, negated, pose]
     for name in ("pose_to_transform", "transform_pose", "pre_grasp", "waypoint"):
-        cases = EXERCISES[name].cases(np.random.default_rng(PUBLIC_SEED))
+        cases = EXERCISES[name].drawn(PUBLIC_SEED)
         w = [arg.orientation.w for case in cases for arg in case.args if isinstance(arg, Pose)]
         assert sum(number < -0.1 for number in w) >= 5 and sum(number > 0.1 for number in w) >= 5
 
 
 def test_chains_and_distances_are_of_all_kinds():
     for seed in SEEDS:
-        chains = EXERCISES["chain"].cases(np.random.default_rng(seed))
+        chains = EXERCISES["chain"].drawn(seed)
         assert {len(case.args) for case in chains} == {1, 2, 3, 4, 5, 6}
-        calls = EXERCISES["pre_grasp"].cases(np.random.default_rng(seed))
+        calls = EXERCISES["pre_grasp"].drawn(seed)
         assert {(len(case.args), tuple(case.kwargs)) for case in calls} == {(1, ()), (2, ()), (1, ("distance",))}
         distances = {case.args[1] for case in calls if len(case.args) == 2}
         assert {0.25, 0.02} <= distances
@@ -406,7 +406,7 @@ def test_pre_grasp_of_the_lab():
     position, q = answer.position, answer.orientation
     assert [position.x, position.y, position.z] == pytest.approx([0.529289321708, -0.170710677946, 0.7], abs=1e-10)
     assert [q.x, q.y, q.z, q.w] == pytest.approx([0.0, 0.0, 0.382683431234, 0.92387953298], abs=1e-8)
-    assert object_pose in [case.args[0] for case in EXERCISES["pre_grasp"].cases(np.random.default_rng(PUBLIC_SEED))]
+    assert object_pose in [case.args[0] for case in EXERCISES["pre_grasp"].drawn(PUBLIC_SEED)]
 
 
 def test_example_1_of_the_lab():
@@ -419,7 +419,7 @@ def test_example_1_of_the_lab():
     assert np.allclose(EXERCISES["pose_to_transform"].reference(pose), example)
     point = EXERCISES["transform_point"].reference(example, np.array([1.0, 0.0, 0.0]))
     assert point == pytest.approx([c, c, 0.5])
-    shown = [case.args[0] for case in EXERCISES["transform_to_pose"].cases(np.random.default_rng(PUBLIC_SEED))]
+    shown = [case.args[0] for case in EXERCISES["transform_to_pose"].drawn(PUBLIC_SEED)]
     assert any(np.allclose(matrix, example) for matrix in shown)
 
 

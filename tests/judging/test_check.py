@@ -10,7 +10,7 @@ from IPython.utils.capture import capture_output
 from support import ASKED, judged, key_of
 from transform_lab import Point, Pose, Quaternion, check, once_done, tft
 from transform_lab.check import CheckFailed
-from transform_lab.judging import codec, comparison, panel
+from transform_lab.judging import codec, comparison, lines, panel
 from transform_lab.judging.advice import OUT
 from transform_lab.judging.calling import call
 from transform_lab.judging.kinds import KINDS
@@ -604,3 +604,25 @@ def test_what_is_easy_to_reckon_with():
     assert _effort([codec.encode(np.eye(4))]) < _effort(
         [codec.encode(Pose(Point(0.123, 0, 0), Quaternion(0, 0, 0, 1)))]
     )
+
+
+# --- numbers --------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("number, shown", [
+    (0.70710678, "0.7071"), (0.5, "0.5"), (6e-17, "0"), (1.0 - 2e-16, "1"), (-6.1e-17, "0"), (7.0, "7"),
+    (0.500001, "0.500001"), (-0.499999, "-0.499999"), (1.000004, "1.000004"), (6.4e-6, "6.4e-06"), (0.9999998, "0.9999998"),
+])  # fmt: skip
+def test_what_is_almost_a_simple_number_is_shown_as_what_it_is(number, shown):
+    assert lines.row([number]) == shown
+
+
+def test_two_that_are_not_the_same_do_not_look_the_same(said):
+    """So that nobody is told that two quaternions differ which read alike."""
+
+    def generous(q1, q2):
+        return min(np.abs(q1 - q2).max(), np.abs(q1 + q2).max()) <= 1e-5
+
+    text, _ = failing("same_rotation", generous, said)
+    first, second = re.findall(r"^ +q[12] +(.*)$", text, re.MULTILINE)
+    assert first != second

@@ -237,7 +237,7 @@ def test_most_of_what_students_wrote_has_a_name(slow):
 def of_one_part(name):
     """{part: [misconceptions that leave the other parts right]}"""
     exercise, found = EXERCISES[name], {}
-    cases, parts = exercise.cases(np.random.default_rng(PUBLIC_SEED)), KINDS[exercise.returns].parts
+    cases, parts = exercise.drawn(PUBLIC_SEED), KINDS[exercise.returns].parts
     for misconception in exercise.misconceptions:
         changed = set()
         try:

@@ -5,6 +5,8 @@ import numpy as np
 from . import codec
 from .reading import type_in_words
 
+ROUNDING = 1e-9  # what a number is off by when it was computed
+
 
 def labelled(label, value):
     """Lines that show a value of any kind under its name."""
@@ -52,5 +54,7 @@ def _field(value):
 
 def _short(number):
     if isinstance(number, (float, np.floating)):
-        return f"{round(float(number), 4) + 0.0:g}"
+        short, simple = round(float(number), 4), round(float(number), 1)
+        almost = short == simple and abs(number - simple) > ROUNDING  # what makes it another number has to be seen
+        return f"{round(float(number), 7):.8g}" if almost else f"{short + 0.0:g}"
     return repr(number) if isinstance(number, str) else str(number)

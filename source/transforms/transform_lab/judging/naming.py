@@ -72,11 +72,11 @@ GENERAL = {
     ),
     "too-strict": (
         "You answer False to some that deserve True; whatever deserves False gets it.",
-        "Which of your conditions does the example below not meet? Is it asked for, and does it allow for rounding?",
+        "Which of your conditions do they not meet? Is it asked for, and does it allow for rounding?",
     ),
     "too-generous": (
         "You answer True to some that deserve False; whatever deserves True gets it.",
-        "Which property does the example below lack, and does your function look at it?",
+        "Which property of a right one do they lack, and does your function look at it?",
     ),
 }
 
@@ -87,6 +87,9 @@ class Diagnosis(NamedTuple):
     ids: tuple = ()
     says: str = ""
     hint: str = ""
+
+    def __bool__(self):
+        return bool(self.ids)
 
 
 def general(identifier, says="", hint=""):

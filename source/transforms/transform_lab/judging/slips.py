@@ -3,6 +3,7 @@
 They say what is seen, and no more: only signs are wrong, a single number is, or a predicate fails on one side alone.
 """
 
+import math
 from itertools import product
 
 import numpy as np
@@ -13,12 +14,12 @@ from .kinds import KINDS, TOLERANCE
 from .naming import Diagnosis, general
 
 AT_LEAST, MANY = 2, 4  # failing cases: one shows nothing that they have in common; many need no number that tells
+SMALL = 0.1  # metres, or of an entry or a component
 
 
 def by_shape(exercise, outcomes):
     """The Diagnosis of wrong answers (all of which could be compared) by what is wrong with each of them."""
-    expected = [parts_of(exercise["returns"], codec.decode(case["expected"])) for case in exercise["cases"]]
-    failing = [(outcome.got, right) for outcome, right in zip(outcomes, expected) if not outcome.answered]
+    expected, failing = _compared(exercise, outcomes)
     if len(failing) < AT_LEAST:
         return Diagnosis()
     if exercise["returns"] == "truth":
@@ -29,6 +30,28 @@ def by_shape(exercise, outcomes):
     if sum(part.size for part in expected[0].values()) == 1:
         return Diagnosis()
     return _slip([_readings(KINDS[exercise["returns"]].parts, got, right) for got, right in failing])
+
+
+def zeros_for_small(exercise, outcomes):
+    """The Diagnosis of answers whose wrong numbers are all 0, and would be small."""
+    _, failing = _compared(exercise, outcomes)
+    if exercise["returns"] == "truth" or any(got is None for got, _ in failing):
+        return Diagnosis()
+    parts, dropped = KINDS[exercise["returns"]].parts, 0
+    for got, right in failing:
+        readings = [one.values() for one in _readings(parts, got, right)]
+        dropped += next((len(one) for one in readings if all(wrong.dropped for wrong in one)), -math.inf)
+    return (
+        general("small-values-dropped", "Where a number of the answer is small, yours is 0.")
+        if dropped >= AT_LEAST
+        else Diagnosis()
+    )
+
+
+def _compared(exercise, outcomes):
+    """The right answers' parts, and of those that are wrong, (parts, right parts)."""
+    expected = [parts_of(exercise["returns"], codec.decode(case["expected"])) for case in exercise["cases"]]
+    return expected, [(outcome.got, right) for outcome, right in zip(outcomes, expected) if not outcome.answered]
 
 
 def _slip(failing):
@@ -45,9 +68,10 @@ def _slip(failing):
 
 
 class _Wrong:
-    """A wrong number: whether its size is right, and whether that tells anything."""
+    """A wrong number: whether it is 0 for a small one; whether its size is right, and whether that tells anything."""
 
     def __init__(self, got, expected):
+        self.dropped = got == 0.0 and abs(expected) < SMALL
         self.size_right = abs(abs(got) - abs(expected)) <= TOLERANCE * max(1.0, abs(expected))
         # Another formula hardly gives this number by chance, as it does 0, 1, and the sine of 30, 45 or 60 degrees.
         self.telling = abs(4 * expected**2 - round(4 * expected**2)) > 1e-3
