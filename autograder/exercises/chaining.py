@@ -184,6 +184,7 @@ CHAIN = Exercise(
                 lambda *transforms: chain(*reversed(transforms[2:]), *transforms[:2]),  # right for two
                 lambda *transforms: chain(*reversed(transforms[:-1]), transforms[-1]),  # right for two, too
                 lambda *transforms: chain(transforms[-1], *transforms[:-1]),
+                lambda *transforms: chain(*transforms[-2:], *reversed(transforms[:-2])),  # each time the rest in front
             )
         ),
         *(
@@ -220,6 +221,15 @@ CHAIN = Exercise(
             MATCH_THE_NAMES,
         ),
         Misconception("offset-not-rotated", _with_rotation(lambda rotations: chain(*rotations)), *EACH_BY_ITSELF),
+        Misconception(
+            "offset-not-rotated",
+            lambda *transforms: transform(
+                chain(*transforms)[:3, :3],
+                sum(chain(*pair)[:3, 3] - pair[0][:3, 3] for pair in pairwise((np.eye(4), *transforms))),
+            ),
+            "Each translation is turned by the link before it alone.",
+            "All links before it turn it: keep their product.",
+        ),
         Misconception(
             "offset-not-rotated;order-reversed",
             _with_rotation(lambda rotations: chain(*reversed(rotations))),
@@ -259,6 +269,7 @@ CHAIN = Exercise(
                 lambda *transforms: chain(np.eye(4), *transforms[:-1]),
                 lambda *transforms: transforms[0],
                 lambda *transforms: transforms[-1],
+                lambda *transforms: chain(transforms[0], *transforms[1:-1]),
                 lambda *transforms: chain(*transforms[:3]),
                 lambda *transforms: chain(*transforms[:4]),
                 _in_pairs,
@@ -559,6 +570,14 @@ TRANSFORM_POSE = Exercise(
             Misconception(
                 "quaternion-order",
                 _with_orientation(lambda T, p, order=order: _read_in_another_order(T, p, order)),
+                *QUATERNION_ORDER,
+            )
+            for order in ORDERS
+        ),
+        *(
+            Misconception(
+                "quaternion-order",
+                _with_orientation(lambda T, p, order=order: _read_in_another_order(T, p, order)[np.argsort(order)]),
                 *QUATERNION_ORDER,
             )
             for order in ORDERS

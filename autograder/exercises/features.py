@@ -94,9 +94,11 @@ FAR_OFF = decades(-5, -2)
 # What is special of arguments, by the bands of a feature that they lie in: the table of the features' bands is the key
 SPECIAL = (
     ("integers", (TYPES,), {"integers"}),
+    ("zero", (LENGTHS, TURNS), {"0"}),
     ("half turn", (SHORT_OF_HALF,), {"0", *list(SHORT_OF_HALF)[1:7]}),
     ("small", (LENGTHS, TURNS, DEGREES), {f"1e{decade}" for decade in range(-6, -1)}),
     ("far", (LENGTHS,), {"1e1", "1e2", "1e3"}),
+    ("far", (DEGREES,), {"1e3"}),
 )
 
 
@@ -107,7 +109,7 @@ def special_of(features, arguments):
         if sorts := [(what, names) for what, tables, names in SPECIAL if feature.bands in tables]:
             lies_in = feature.bands_of(arguments)
             found |= {what for what, names in sorts if lies_in & names}
-    return [what for what, _, _ in SPECIAL if what in found]
+    return list(dict.fromkeys(what for what, _, _ in SPECIAL if what in found))
 
 
 def of_differences(parameters, names, differences):

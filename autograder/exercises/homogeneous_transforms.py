@@ -44,15 +44,19 @@ from .conversions import (
     BY_ANGLES,
     BY_BRANCHES,
     BY_TRACE,
+    GIMBAL_LOCK,
     ORDERS,
     angle_not_halved,
+    at_gimbal_lock,
     at_half_turns,
     axis_and_angle,
     by_tangents,
     from_euler,
     half_turn_by_tolerance,
     lengths_with_signs,
+    near_gimbal_lock,
     near_half_turns,
+    plain_angles,
     slips,
     trace_formula,
     trace_formula_guarded,
@@ -388,6 +392,11 @@ def _yaw_alone(matrix):
     return Rotation.from_euler("z", math.atan2(matrix[1, 0], matrix[0, 0])).as_quat()
 
 
+def _by_angles(angles_of, axes, pose):
+    """The rotation of a pose by way of three angles."""
+    return Rotation.from_euler(axes, angles_of(matrix(pose)[:3, :3])).as_matrix()
+
+
 QUATERNION_ORDER = (
     "The four numbers of the quaternion are in another order than ROS's.",
     "Which comes first in `tf.transformations`, and which last: is w at the front or at the end?",
@@ -684,6 +693,19 @@ POSE_TO_TRANSFORM = Exercise(
         ),
         Misconception("yaw-only", _from_pose_with(_planar), *YAW_ALONE),
         Misconception(
+            "euler-order",
+            lambda pose: make_transform(_by_angles(roll_pitch_yaw, "XYZ", pose), position(pose)),
+            "Roll, pitch and yaw were put together in another order than they were taken apart.",
+            "Fixed axes and moving axes are two orders; a function from quaternion to matrix needs neither.",
+            varies=at_lock(matrix, parts=("rotation",)),
+        ),
+        Misconception(
+            "gimbal-lock",
+            lambda pose: make_transform(_by_angles(plain_angles, "xyz", pose), position(pose)),
+            *GIMBAL_LOCK,
+            **open_where(near_gimbal_lock, at_gimbal_lock, matrix, ("rotation",)),
+        ),
+        Misconception(
             "angle-not-halved",
             _from_pose_with(lambda q: Rotation.from_rotvec(Rotation.from_quat(q).as_rotvec() / 2.0).as_matrix()),
             *HALF_THE_ANGLE,
@@ -875,6 +897,7 @@ TRANSFORM_POINT = Exercise(
             for wrong in (
                 lambda a_T_b, p_in_b: a_T_b * _homogeneous(p_in_b),
                 lambda a_T_b, p_in_b: (a_T_b * _homogeneous(p_in_b))[:3],
+                lambda a_T_b, p_in_b: np.sum(a_T_b * _homogeneous(p_in_b), axis=0)[:3],
                 lambda a_T_b, p_in_b: a_T_b[:3, :3] * p_in_b + a_T_b[:3, 3],
                 lambda a_T_b, p_in_b: np.diag(a_T_b)[:3] * p_in_b + a_T_b[:3, 3],
                 lambda a_T_b, p_in_b: np.diag(a_T_b)[:3] * p_in_b,

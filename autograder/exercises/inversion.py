@@ -648,6 +648,12 @@ OBJECT_IN_GRIPPER = Exercise(
             *ALONG_THE_BASE,
         ),
         Misconception(
+            "yaw-only",
+            lambda camera, gripper, p: _yaw_turned_back(gripper)[:3, :3] @ (_apply(camera, p) - gripper[:3, 3]),
+            "The way into the gripper's frame is turned about z only, as if the gripper were never tilted.",
+            "Use the gripper's whole rotation, not an angle of it.",
+        ),
+        Misconception(
             "offset-not-rotated;wrong-sign",
             lambda camera, gripper, p: gripper[:3, 3] - _apply(camera, p),
             *together(ALONG_THE_BASE, FROM_THE_OBJECT),

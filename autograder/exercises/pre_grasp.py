@@ -389,6 +389,11 @@ UPSIDE_DOWN = {
     "hint": "For an object that points straight down, where is the gripper before it grasps: above, or below?",
 }
 
+
+def _without_distance(object_pose, distance=None):
+    return ("position",) if distance is None else ()
+
+
 PRE_GRASP = Exercise(
     name="pre_grasp",
     returns="pose",
@@ -420,6 +425,14 @@ PRE_GRASP = Exercise(
             "distance-ignored;base-frame-offset",
             _behind(_moved(lambda p, R, offset: p - (0.1, 0, 0))),
             *together(ALWAYS_TEN, IN_THE_BASE),
+        ),
+        Misconception(
+            "wrong-default",
+            lambda object_pose, distance=0.2: pre_grasp(object_pose, distance),
+            "The answer goes wrong where no distance is given.",
+            "How far behind the object is the gripper then? The docstring says it; a parameter can have a default.",
+            varies=_without_distance,
+            fails=_without_distance,
         ),
         Misconception(
             "wrong-sign",

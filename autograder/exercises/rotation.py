@@ -759,6 +759,7 @@ IS_ROTATION = Exercise(
             for wrong in (
                 lambda R: abs(np.sum(R.T @ R - np.eye(3))) <= TOLERANCE and np.linalg.det(R) > 0,
                 lambda R: abs(np.sum(R.T @ R - np.eye(3))) <= TOLERANCE and _close(np.linalg.det(R), 1.0),
+                lambda R: np.sum(R.T @ R - np.eye(3)) <= TOLERANCE and np.linalg.det(R) > 0,
             )
         ),
         Misconception("determinant-only", lambda R: np.linalg.det(R) > 0, *POSITIVE_DETERMINANT),
@@ -881,6 +882,11 @@ def numbers_off(q1, q2):
 ALIKE = 4e-7  # how far q1 and q2 may be from each other: half the angle between them, too, is less than 1e-6
 
 
+def _turned_in_itself(q, axis):
+    """q after a turn by 0.9 about an axis of the turned frame: that axis points where it did."""
+    return (Rotation.from_quat(q) * Rotation.from_rotvec(0.9 * axis)).as_quat()
+
+
 def _shifted(q, by):
     """q turned a little, by half as much in each of four numbers of one size."""
     moved = q + 0.5 * by * q[::-1] * (1.0, -1.0, 1.0, -1.0) / np.abs(q)
@@ -921,7 +927,7 @@ def same_rotation_cases(rng):
         return _hardly_shorter_than_1(quaternion(rotation_about(axis, angle)))
 
     def nearby(q, size):
-        step = rng.normal(size=4)
+        step = rng.permutation([1.0, 0.7, 0.4, 0.1]) * rng.choice([-1.0, 1.0], size=4)
         step -= (step @ q) * q  # along the unit sphere, so that the result is a unit quaternion too
         moved = q + size * step / np.linalg.norm(step)
         return _hardly_shorter_than_1(moved / np.linalg.norm(moved))
@@ -960,6 +966,8 @@ def same_rotation_cases(rng):
             *((positive_unit, _others_rolled(positive_unit, kept)) for kept in range(4)),
             (turn(axis, 0.9), turn(other, 0.9)), (turn(axis, 0.9), turn(mirrored, 0.9)),
             (turn(axis, 0.5), -turn(axis, 1.4)), (turn(axis, 1.4), -turn(axis, 1.4)),
+            *((turn(along, 0.5), -turn(along, 1.4)) for along in np.eye(3)),
+            *((q[n], _turned_in_itself(q[n], along)) for n, along in enumerate(np.eye(3))),
         ],
         "two quaternions that differ by rounding, or by about a degree": [
             (q[9], nearby(q[9], 1e-9)), (q[0], -nearby(q[0], 1e-9)),
@@ -1130,7 +1138,7 @@ SAME_ROTATION = Exercise(
         ),
         *(
             Misconception(
-                "differences-cancel",
+                "errors-cancel",
                 wrong,
                 "You add up differences, and those of opposite sign cancel.",
                 "Which two lists of four numbers have the same sum without being the same? Try (1, 0, 0, 0) and (0, 1, 0, 0).",
@@ -1162,6 +1170,15 @@ SAME_ROTATION = Exercise(
             _same_axis,
             "You compare the axes only: x, y and z point along the axis, whatever the angle.",
             "Turns by 30 and by 80 degrees about one axis are different orientations.",
+        ),
+        *(
+            Misconception(
+                "one-vector-compared",
+                lambda q1, q2, axis=axis: _close(*(Rotation.from_quat(q).apply(axis) for q in (q1, q2))),
+                "You compare where a single vector is turned to.",
+                "Which turns leave that vector where it is?",
+            )
+            for axis in np.eye(3)
         ),
         *(
             Misconception("half-turn-missed", wrong, *SIGN_OF_W)

@@ -11,7 +11,7 @@ from transform_lab.judging.calling import call
 from transform_lab.judging.kinds import ARGUMENT, EARLIER_ANSWER, KINDS
 
 from autograder.exercises import EXERCISES
-from autograder.exercises.cases import matrix
+from autograder.exercises.cases import matrix, position
 
 every_seed = pytest.mark.parametrize("seed", SEEDS)
 
@@ -55,6 +55,30 @@ def cleaned(name, below):
     return answer
 
 
+def whole_numbers_alone(pose):
+    T = np.diag([1, 1, 1, 1])
+    T[:3, 3] = position(pose)
+    return T @ np.block([[matrix(pose)[:3, :3], np.zeros((3, 1))], [0, 0, 0, 1]])
+
+
+def last_column_rounded(x_axis, y_axis):
+    return np.column_stack((x_axis, y_axis, np.cross(x_axis, y_axis).round(3)))
+
+
+def unturned_is_forgotten(*transforms):
+    return right("chain")(
+        *(T for T in transforms if not np.allclose(T[:3, :3], np.eye(3), rtol=0, atol=1e-12)), np.eye(4)
+    )
+
+
+def no_translation_is_nothing(R, p):
+    return right("make_transform")(R, p) if np.any(p) else np.eye(4)
+
+
+def in_single_precision(degrees):
+    return right("rotation_about_z")(float(np.float32(degrees)))
+
+
 def raises_at_half_turns(matrix):
     if abs(np.trace(matrix[:3, :3]) + 1.0) < 1e-9:
         raise IndexError("no such branch")
@@ -72,6 +96,11 @@ def raises_at_half_turns(matrix):
       for name in ("transform_point", "object_in_gripper", "chain", "invert_transform", "make_transform")
       for below in (1e-5, 1e-3, 0.05)),
     ("transform_to_pose", raises_at_half_turns, "half-turn-missed"),
+    ("pose_to_transform", whole_numbers_alone, "integer-truncation"),
+    ("rotation_from_axes", last_column_rounded, "rounded"),
+    ("chain", unturned_is_forgotten, "zero-special-case"),
+    ("make_transform", no_translation_is_nothing, "zero-special-case"),
+    ("rotation_about_z", in_single_precision, "digits-lost"),
 ])  # fmt: skip
 def test_cases_of_one_sort_give_the_name(name, wrong, called, seed):
     verdict = judged(name, wrong, seed)

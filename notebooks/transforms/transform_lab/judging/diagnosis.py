@@ -16,7 +16,7 @@ from .kinds import ARGUMENT, EARLIER_ANSWER, KINDS
 from .naming import GENERAL, Diagnosis, general, joined, shared
 from .places import by_place
 from .plain import error_of, has_to_be_wrong, open_parts_of
-from .slips import by_shape, zeros_for_small
+from .slips import by_shape, cut_short
 from .two_mistakes import part_by_part
 
 # Where a formula breaks down.
@@ -91,7 +91,7 @@ def _explain(name, exercise, replies, outcomes, tell):
     if found.ids:
         return found
     mutated = any(outcome.mutated for outcome in outcomes)  # what is wrong may come from the changed argument alone
-    place = Diagnosis() if mutated else zeros_for_small(exercise, outcomes) or by_place(exercise, outcomes)
+    place = Diagnosis() if mutated else cut_short(exercise, outcomes) or by_place(exercise, outcomes)
     if any(outcome.problem for outcome in outcomes):
         found = _general(name, exercise, replies, outcomes, tell)
         return found if found.ids else found._replace(ids=place.ids, hint=place.hint or found.hint)

@@ -50,6 +50,11 @@ GENERAL = {
         "An array that takes its type from such an argument, as a copy does, or `zeros_like`, keeps whole numbers alone: "
         "begin with an array of floats, such as `np.eye(4)` or `np.zeros(3)`.",
     ),
+    "zero-special-case": (
+        "Your function goes wrong where a turn or a distance is zero, and is right everywhere else.",
+        "Is there a case of its own for that, which forgets the rest? A frame may be moved without being turned, or turned "
+        "where it is.",
+    ),
     "half-turn-missed": (
         "Your function goes wrong at a half turn or near it, and is right everywhere else.",
         "There w is 0, and so is the sine of the angle: do you divide by one of them, or by something as small?",
@@ -59,7 +64,7 @@ GENERAL = {
         "Is something small taken for nothing, by a tolerance? Do without that special case, or keep it for exact zeros.",
     ),
     "digits-lost": (
-        "Your function goes wrong where distances are large, and is right everywhere else.",
+        "Your function goes wrong where distances or angles are large, and is right everywhere else.",
         "Is a tolerance relative to the size of the numbers (`rtol`, `rcond`), or are they kept in single precision?",
     ),
     "sign-slip": (

@@ -10,6 +10,7 @@ BY_CHANCE = 0.08  # how likely it may be, at most, that as many cases, drawn bli
 # In this order: what is special of a case, as in PlainCase, and the name
 SORTS = {
     "integers": "integer-truncation",
+    "zero": "zero-special-case",
     "half turn": "half-turn-missed",
     "small": "small-values-dropped",
     "far": "digits-lost",

@@ -3,7 +3,6 @@
 They say what is seen, and no more: only signs are wrong, a single number is, or a predicate fails on one side alone.
 """
 
-import math
 from itertools import product
 
 import numpy as np
@@ -20,32 +19,52 @@ SMALL = 0.1  # metres, or of an entry or a component
 def by_shape(exercise, outcomes):
     """The Diagnosis of wrong answers (all of which could be compared) by what is wrong with each of them."""
     expected, failing = _compared(exercise, outcomes)
-    if len(failing) < AT_LEAST:
-        return Diagnosis()
     if exercise["returns"] == "truth":
         deserved = {bool(right["answer"]) for _, right in failing}
         met = {bool(right["answer"]) for outcome, right in zip(outcomes, expected) if outcome.answered}
         one_sided = len(deserved) == 1 and not deserved >= met
         return general("too-strict" if True in deserved else "too-generous") if one_sided else Diagnosis()
-    if sum(part.size for part in expected[0].values()) == 1:
+    if len(failing) < AT_LEAST or sum(part.size for part in expected[0].values()) == 1:
         return Diagnosis()
     return _slip([_readings(KINDS[exercise["returns"]].parts, got, right) for got, right in failing])
 
 
-def zeros_for_small(exercise, outcomes):
-    """The Diagnosis of answers whose wrong numbers are all 0, and would be small."""
+def cut_short(exercise, outcomes):
+    """The Diagnosis of answers whose wrong numbers are the right ones, but 0 where these are small, whole, or rounded."""
     _, failing = _compared(exercise, outcomes)
     if exercise["returns"] == "truth" or any(got is None for got, _ in failing):
         return Diagnosis()
-    parts, dropped = KINDS[exercise["returns"]].parts, 0
-    for got, right in failing:
-        readings = [one.values() for one in _readings(parts, got, right)]
-        dropped += next((len(one) for one in readings if all(wrong.dropped for wrong in one)), -math.inf)
-    return (
-        general("small-values-dropped", "Where a number of the answer is small, yours is 0.")
-        if dropped >= AT_LEAST
-        else Diagnosis()
+    parts = KINDS[exercise["returns"]].parts
+    readings = [[list(one.values()) for one in _readings(parts, got, right)] for got, right in failing]
+    for identifier, says, least, cut, telling in CUT:
+        wrong = [next((one for one in each if all(cut(w.got, w.expected) for w in one)), None) for each in readings]
+        if None not in wrong and sum(telling(w.got) for one in wrong for w in one) >= least:
+            return general(identifier, says)
+    return Diagnosis()
+
+
+def _to(step):
+    """Whether a number is another, rounded to steps of this size."""
+    return lambda got, expected: (
+        abs(got - step * np.round(got / step)) < 1e-9 and abs(got - expected) <= 0.5 * step + 1e-9
     )
+
+
+# What was done to numbers: the name, what to say of it, how many have to show it, what it makes of one, and whether that tells
+CUT = (
+    (
+        "small-values-dropped", "Where a number of the answer is small, yours is 0.", AT_LEAST,
+        lambda got, expected: got == 0.0 and abs(expected) < SMALL, lambda got: True,
+    ),
+    (
+        "integer-truncation", "What is wrong in your answers are whole numbers: fractions are cut off.", AT_LEAST,
+        lambda got, expected: got == int(expected), lambda got: got != 0.0,
+    ),
+    *(
+        ("rounded", "What is wrong in your answers is right, but rounded.", MANY, _to(10.0**-n), lambda got: got % 1.0 != 0.0)
+        for n in range(1, 6)
+    ),
+)  # fmt: skip
 
 
 def _compared(exercise, outcomes):
@@ -68,10 +87,10 @@ def _slip(failing):
 
 
 class _Wrong:
-    """A wrong number: whether it is 0 for a small one; whether its size is right, and whether that tells anything."""
+    """A wrong number and the right one: whether its size is right, and whether that tells anything."""
 
     def __init__(self, got, expected):
-        self.dropped = got == 0.0 and abs(expected) < SMALL
+        self.got, self.expected = float(got), float(expected)
         self.size_right = abs(abs(got) - abs(expected)) <= TOLERANCE * max(1.0, abs(expected))
         # Another formula hardly gives this number by chance, as it does 0, 1, and the sine of 30, 45 or 60 degrees.
         self.telling = abs(4 * expected**2 - round(4 * expected**2)) > 1e-3
