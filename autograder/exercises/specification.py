@@ -6,7 +6,7 @@ the diagnosis in feedback and report, and the tests that prove the grader.
 
 import math
 import pickle
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from inspect import signature
 
@@ -102,8 +102,10 @@ class Exercise:
         return dict(signature(self.reference).bind(*args, **kwargs).arguments)
 
 
-def key(exercise: Exercise, seed: int) -> PlainExercise:
+def key(exercise: Exercise, seed: int, answers: Callable[["WrongAnswers"], Sequence] = list) -> PlainExercise:
     """The exercise with the cases drawn from `seed`, as the plain data that `transform_lab.judging.verdict.examine` takes.
+
+    answers: `list` has the misconceptions' answers in it; `WrongAnswers.of_itself` leaves each until it is asked for
 
     Hidden cases come in an order of their own, so that a call's number tells nothing about it; public ones, which are read,
     as the specification has them.
@@ -116,7 +118,7 @@ def key(exercise: Exercise, seed: int) -> PlainExercise:
         "credit": exercise.credit,
         "weights": {case.family: exercise.weights.get(case.family, 1) for case in cases},
         "misconceptions": [{"id": m.id, "says": m.says, "hint": m.hint} for m in exercise.misconceptions],
-        "cases": [_case(exercise, cases[number]) for number in order_of(len(cases), seed)],
+        "cases": [_case(exercise, cases[number], answers) for number in order_of(len(cases), seed)],
     }
 
 
@@ -127,6 +129,24 @@ def order_of(number, seed):
         if seed == PUBLIC_SEED
         else np.random.default_rng([seed, ORDER]).permutation(number).tolist()
     )
+
+
+class WrongAnswers(Sequence):
+    """What the key tells of each misconception in one case, worked out when it is asked for: a right solution needs none."""
+
+    def __init__(self, misconceptions, tell):
+        self.misconceptions, self.tell, self.told = misconceptions, tell, {}
+
+    def __len__(self):
+        return len(self.misconceptions)
+
+    def __getitem__(self, index):
+        if index not in self.told:
+            self.told[index] = self.tell(self.misconceptions[index])
+        return self.told[index]
+
+    def of_itself(self):
+        return self
 
 
 class Arguments:
@@ -151,7 +171,7 @@ class Arguments:
         )
 
 
-def _case(exercise: Exercise, case: Case) -> PlainCase:
+def _case(exercise, case, answers) -> PlainCase:
     args = [_rounded(codec.encode(arg), DIGITS_OF_ARGUMENTS) for arg in case.args]
     kwargs = {name: _rounded(codec.encode(arg), DIGITS_OF_ARGUMENTS) for name, arg in case.kwargs.items()}
     fresh = Arguments(args, kwargs).fresh
@@ -164,10 +184,14 @@ def _case(exercise: Exercise, case: Case) -> PlainCase:
         "args": args,
         "kwargs": kwargs,
         "expected": expected,
-        "wrong": [
-            _untold(misconception, given, named) or _wrong_answer(exercise.returns, misconception, fresh, right)
-            for misconception in exercise.misconceptions
-        ],
+        "wrong": answers(
+            WrongAnswers(
+                exercise.misconceptions,
+                lambda misconception: (
+                    _untold(misconception, given, named) or _wrong_answer(exercise.returns, misconception, fresh, right)
+                ),
+            )
+        ),
     }
 
 

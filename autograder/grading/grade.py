@@ -7,7 +7,7 @@
 
 import os
 import secrets
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
@@ -19,6 +19,7 @@ from transform_lab.judging.verdict import Verdict
 
 from ..course import Course
 from ..exercises import EXERCISES, key
+from ..exercises.specification import WrongAnswers
 from ..intake.restore import Intake, restore, without_work
 from ..intake.submission import Submission, receipts
 from ..released import Released
@@ -34,6 +35,17 @@ if TYPE_CHECKING:
 
 
 NOT_JUDGED = "it could not be judged ({}); look at it by hand"
+
+
+class Keys(dict):
+    """The hidden cases of a run, {exercise: plain data}. Another process that gets them draws them again."""
+
+    def __init__(self, names: Iterable[str], seed: int):
+        super().__init__({name: key(EXERCISES[name], seed, WrongAnswers.of_itself) for name in names})
+        self.drawn = tuple(names), seed
+
+    def __reduce__(self):
+        return Keys, self.drawn
 
 
 @dataclass(frozen=True)
@@ -85,11 +97,10 @@ def grading_run(
     """The GradingRun of a course, with the hidden cases drawn from `seed` (for all notebooks, or those named)."""
     wanted = course.notebooks if notebooks is None else notebooks
     names = [name for notebook in wanted for name in course.notebooks[notebook].points]
-    keys = {name: key(EXERCISES[name], seed) for name in names}
     key_file = course.release / "transform_lab" / "key.json"
     public = public_cases(key_file.read_text(encoding="utf-8")) if key_file.is_file() else {}
     digest = digests.of_grades(course, limits)
-    return GradingRun(dict(course.notebooks), keys, course.package, seed, digest, limits, isolated, public)
+    return GradingRun(dict(course.notebooks), Keys(names, seed), course.package, seed, digest, limits, isolated, public)
 
 
 def new_seed() -> int:

@@ -22,7 +22,7 @@ def test_what_is_wrong_earns_the_same_for_every_seed_and_is_called_the_same(name
     differ = {}
     with quiet():
         for label in sorted(wrong.keys() - BY_CHANCE)[:: 1 if thorough else 10]:
-            verdicts = [judged(name, wrong[label], seed) for seed in SEEDS[1 : None if thorough else 3]]
+            verdicts = [judged(name, wrong[label], seed) for seed in SEEDS[1 : 4 if thorough else 3]]
             found = {(round(verdict.credit, 6), verdict.misconceptions) for verdict in verdicts}
             if len(found) > 1:
                 differ[label] = found

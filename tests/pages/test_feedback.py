@@ -20,6 +20,7 @@ from autograder.bridge import nbgrader_api as api
 from autograder.bridge.gradebook import Writer
 from autograder.bridge.nbgrader_api import settings
 from autograder.course import ASSIGNMENT, Course
+from autograder.exercises import EXERCISES, PUBLIC_SEED, key
 from autograder.grading import public_example
 from autograder.grading.records import RECORD, recorded
 from autograder.pages import examples, feedback
@@ -180,7 +181,7 @@ def test_an_odd_answer_is_escaped(classroom):
 
 
 def test_an_answer_that_no_file_can_hold_is_no_example():
-    exercise = public_example.public_cases(json.dumps({"exercises": {"chain": key_of("chain")}}))["chain"]
+    exercise = public_example.public_cases(json.dumps({"exercises": {"chain": key(EXERCISES["chain"], PUBLIC_SEED)}}))["chain"]
     wrong = examine("chain", exercise, lambda args, kwargs: Reply("returned", None, [args, kwargs]))
     case = exercise["cases"][0]
 

@@ -9,7 +9,7 @@ class PlainCase(TypedDict):
     """The arguments of one call, with the right answer to them and the wrong ones.
 
     family: which kind of case it is, in a student's words
-    special: what is special of its arguments: some of "integers", "half turn", "small" and "far"
+    special: what is special of its arguments: some of "integers", "zero", "half turn", "small" and "far"
     wrong: what each misconception of the exercise would answer: null where it happens to be right; else a list with the
         fingerprint of each part of the answer (see kinds.Part), null for a part that is right; {"unfit": plain data} where it is
         no answer of the kind, {"raises": name of the exception} where it raises, {"any": [parts of the answer]} where these may
