@@ -51,7 +51,8 @@ def test_nothing_in_a_table_is_run_and_what_would_not_be_is_unchanged(rows):
     read = list(csv.reader(io.StringIO(text, newline="")))
     assert list(map(len, read)) == list(map(len, rows))
     for before, after in ((before, after) for row, now in zip(rows, read) for before, after in zip(row, now)):
-        assert not runs(after) and (runs(before) or after == UNPRINTABLE.sub(" ", before))
+        printable = UNPRINTABLE.sub(" ", before)
+        assert not runs(after) and (runs(before) or runs(printable) or after == printable)
     # Nor where tables have semicolons or tabs, in which a comma and a quote inside a cell mean nothing.
     assert not [cell for cell in re.split("[;\t\r\n]", text) if re.match(r"\s*[=@＝]", cell)]
 

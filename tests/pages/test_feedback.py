@@ -181,7 +181,9 @@ def test_an_odd_answer_is_escaped(classroom):
 
 
 def test_an_answer_that_no_file_can_hold_is_no_example():
-    exercise = public_example.public_cases(json.dumps({"exercises": {"chain": key(EXERCISES["chain"], PUBLIC_SEED)}}))["chain"]
+    exercise = public_example.public_cases(json.dumps({"exercises": {"chain": key(EXERCISES["chain"], PUBLIC_SEED)}}))[
+        "chain"
+    ]
     wrong = examine("chain", exercise, lambda args, kwargs: Reply("returned", None, [args, kwargs]))
     case = exercise["cases"][0]
 
