@@ -569,18 +569,11 @@ TRANSFORM_POSE = Exercise(
         *(
             Misconception(
                 "quaternion-order",
-                _with_orientation(lambda T, p, order=order: _read_in_another_order(T, p, order)),
+                _with_orientation(lambda T, p, order=order, back=back: _read_in_another_order(T, p, order)[back]),
                 *QUATERNION_ORDER,
             )
             for order in ORDERS
-        ),
-        *(
-            Misconception(
-                "quaternion-order",
-                _with_orientation(lambda T, p, order=order: _read_in_another_order(T, p, order)[np.argsort(order)]),
-                *QUATERNION_ORDER,
-            )
-            for order in ORDERS
+            for back in ([0, 1, 2, 3], np.argsort(order))
         ),
         *(
             Misconception(

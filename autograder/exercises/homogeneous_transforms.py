@@ -392,11 +392,6 @@ def _yaw_alone(matrix):
     return Rotation.from_euler("z", math.atan2(matrix[1, 0], matrix[0, 0])).as_quat()
 
 
-def _by_angles(angles_of, axes, pose):
-    """The rotation of a pose by way of three angles."""
-    return Rotation.from_euler(axes, angles_of(matrix(pose)[:3, :3])).as_matrix()
-
-
 QUATERNION_ORDER = (
     "The four numbers of the quaternion are in another order than ROS's.",
     "Which comes first in `tf.transformations`, and which last: is w at the front or at the end?",
@@ -601,6 +596,11 @@ def _from_pose_with(rotation):
     return lambda pose: make_transform(rotation(orientation(pose)), position(pose))
 
 
+def _by_angles(angles_of, axes):
+    """From x, y, z, w to the rotation matrix, by way of three angles."""
+    return lambda q: Rotation.from_euler(axes, angles_of(Rotation.from_quat(q).as_matrix())).as_matrix()
+
+
 def _turned(pose):
     """The rotation alone, as a 4x4 matrix."""
     return make_transform(pose_to_transform(pose)[:3, :3], (0, 0, 0))
@@ -694,14 +694,14 @@ POSE_TO_TRANSFORM = Exercise(
         Misconception("yaw-only", _from_pose_with(_planar), *YAW_ALONE),
         Misconception(
             "euler-order",
-            lambda pose: make_transform(_by_angles(roll_pitch_yaw, "XYZ", pose), position(pose)),
+            _from_pose_with(_by_angles(roll_pitch_yaw, "XYZ")),
             "Roll, pitch and yaw were put together in another order than they were taken apart.",
             "Fixed axes and moving axes are two orders; a function from quaternion to matrix needs neither.",
             varies=at_lock(matrix, parts=("rotation",)),
         ),
         Misconception(
             "gimbal-lock",
-            lambda pose: make_transform(_by_angles(plain_angles, "xyz", pose), position(pose)),
+            _from_pose_with(_by_angles(plain_angles, "xyz")),
             *GIMBAL_LOCK,
             **open_where(near_gimbal_lock, at_gimbal_lock, matrix, ("rotation",)),
         ),

@@ -649,7 +649,7 @@ OBJECT_IN_GRIPPER = Exercise(
         ),
         Misconception(
             "yaw-only",
-            lambda camera, gripper, p: _yaw_turned_back(gripper)[:3, :3] @ (_apply(camera, p) - gripper[:3, 3]),
+            lambda camera, gripper, p: _apply(_yaw_turned_back(gripper), _apply(camera, p)),
             "The way into the gripper's frame is turned about z only, as if the gripper were never tilted.",
             "Use the gripper's whole rotation, not an angle of it.",
         ),

@@ -1140,7 +1140,7 @@ SAME_ROTATION = Exercise(
             Misconception(
                 "errors-cancel",
                 wrong,
-                "You add up differences, and those of opposite sign cancel.",
+                ERRORS_CANCEL[0],
                 "Which two lists of four numbers have the same sum without being the same? Try (1, 0, 0, 0) and (0, 1, 0, 0).",
             )
             for wrong in (

@@ -102,10 +102,10 @@ class Exercise:
         return dict(signature(self.reference).bind(*args, **kwargs).arguments)
 
 
-def key(exercise: Exercise, seed: int, answers: Callable[["WrongAnswers"], Sequence] = list) -> PlainExercise:
+def key(exercise: Exercise, seed: int, when_asked: bool = False) -> PlainExercise:
     """The exercise with the cases drawn from `seed`, as the plain data that `transform_lab.judging.verdict.examine` takes.
 
-    answers: `list` has the misconceptions' answers in it; `WrongAnswers.of_itself` leaves each until it is asked for
+    when_asked: leave each of the misconceptions' answers until somebody asks for it
 
     Hidden cases come in an order of their own, so that a call's number tells nothing about it; public ones, which are read,
     as the specification has them.
@@ -118,7 +118,7 @@ def key(exercise: Exercise, seed: int, answers: Callable[["WrongAnswers"], Seque
         "credit": exercise.credit,
         "weights": {case.family: exercise.weights.get(case.family, 1) for case in cases},
         "misconceptions": [{"id": m.id, "says": m.says, "hint": m.hint} for m in exercise.misconceptions],
-        "cases": [_case(exercise, cases[number], answers) for number in order_of(len(cases), seed)],
+        "cases": [_case(exercise, cases[number], when_asked) for number in order_of(len(cases), seed)],
     }
 
 
@@ -145,9 +145,6 @@ class WrongAnswers(Sequence):
             self.told[index] = self.tell(self.misconceptions[index])
         return self.told[index]
 
-    def of_itself(self):
-        return self
-
 
 class Arguments:
     """A case's arguments (plain data), decoded once: a copy takes a fraction of the time that it takes to decode them."""
@@ -171,27 +168,24 @@ class Arguments:
         )
 
 
-def _case(exercise, case, answers) -> PlainCase:
+def _case(exercise, case, when_asked) -> PlainCase:
     args = [_rounded(codec.encode(arg), DIGITS_OF_ARGUMENTS) for arg in case.args]
     kwargs = {name: _rounded(codec.encode(arg), DIGITS_OF_ARGUMENTS) for name, arg in case.kwargs.items()}
     fresh = Arguments(args, kwargs).fresh
     expected = _answer(exercise.reference, fresh)
     right = _parts_of_the_right(exercise, case, expected)
     given, named = fresh()
+    wrong = WrongAnswers(
+        exercise.misconceptions,
+        lambda one: _untold(one, given, named) or _wrong_answer(exercise.returns, one, fresh, right),
+    )
     return {
         "family": case.family,
         "special": special_of(exercise.features, exercise.bound(given, named)),
         "args": args,
         "kwargs": kwargs,
         "expected": expected,
-        "wrong": answers(
-            WrongAnswers(
-                exercise.misconceptions,
-                lambda misconception: (
-                    _untold(misconception, given, named) or _wrong_answer(exercise.returns, misconception, fresh, right)
-                ),
-            )
-        ),
+        "wrong": wrong if when_asked else list(wrong),
     }
 
 

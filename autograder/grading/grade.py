@@ -19,7 +19,6 @@ from transform_lab.judging.verdict import Verdict
 
 from ..course import Course
 from ..exercises import EXERCISES, key
-from ..exercises.specification import WrongAnswers
 from ..intake.restore import Intake, restore, without_work
 from ..intake.submission import Submission, receipts
 from ..released import Released
@@ -41,7 +40,7 @@ class Keys(dict):
     """The hidden cases of a run, {exercise: plain data}. Another process that gets them draws them again."""
 
     def __init__(self, names: Iterable[str], seed: int):
-        super().__init__({name: key(EXERCISES[name], seed, WrongAnswers.of_itself) for name in names})
+        super().__init__({name: key(EXERCISES[name], seed, when_asked=True) for name in names})
         self.drawn = tuple(names), seed
 
     def __reduce__(self):

@@ -9,7 +9,6 @@ from transform_lab.judging.calling import call
 from transform_lab.judging.verdict import Reply, examine
 
 from ..exercises import EXERCISES, PUBLIC_SEED, key
-from ..exercises.specification import WrongAnswers
 
 YOURS_TO_TRY = (
     "The same mistake, with numbers you can try yourself (this case is one of your notebook's <code>check</code>):"
@@ -62,4 +61,4 @@ def _committed(name, identifier):
 @cache
 def _public(name):
     """The exercise `name` with its public cases, as plain data."""
-    return key(EXERCISES[name], PUBLIC_SEED, WrongAnswers.of_itself)
+    return key(EXERCISES[name], PUBLIC_SEED, when_asked=True)

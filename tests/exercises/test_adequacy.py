@@ -1,6 +1,6 @@
 """The grader is proven right: no wrong solution passes, no right one fails, and misconceptions get their own name.
 
-For every exercise, for its public cases and for the hidden cases of 20 seeds (of one, among the quick tests):
+For every exercise, for its public cases and for the hidden cases of 50 seeds (of one, among the quick tests):
 
 - every misconception is caught; on every tenth seed it is also named by its own id alone
 - there is a case in every band of every feature that the exercise declares
@@ -30,7 +30,7 @@ every_exercise = pytest.mark.parametrize("name", EXERCISES)
 @every_exercise
 def test_adequacy(name, thorough):
     exercise, course = EXERCISES[name], Course(ROOT)
-    drawn_from = seeds(21 if thorough else 2)
+    drawn_from = seeds(51 if thorough else 2)
     tried = to_be_tried(course, exercise)
     assert notebook_solution(course, name) and {"misconception", "mutant", "right"} <= {each.kind for each in tried}
     assert not made_no_longer(exercise, tried), "declared as equivalent, and made no longer"

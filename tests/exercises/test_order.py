@@ -9,7 +9,7 @@ from multiprocessing import get_context
 
 import numpy as np
 from solutions.right import NAMES, RIGHT
-from solutions.wrong import WRONG
+from solutions.wrong import CACHES, WRONG
 from transform_lab.judging.calling import call
 from transform_lab.judging.verdict import Reply, examine
 
@@ -21,11 +21,8 @@ EVERY = {
     **{f"right: {name}: {label}": (name, function) for (name, function), label in zip(RIGHT, NAMES)},
     **{f"wrong: {name}: {function.__name__}": (name, function) for name, _, function in WRONG},
 }
-# Default arguments that are written into, and caches that do not look at all of the arguments.
-REMEMBER = {
-    "ttp_accumulates", "chain_remembers",
-    "point_cached", "inv_cached_by_rotation", "rel_cached_inverse", "oig_cached_chain", "pg_cached",
-}  # fmt: skip
+# Default arguments that are written into, and caches.
+REMEMBER = {"ttp_accumulates", "chain_remembers", *CACHES}
 
 
 @cache

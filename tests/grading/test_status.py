@@ -72,7 +72,7 @@ def graded(released, tmp_path_factory, added):
     printed = io.StringIO()
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(grade, "restore", with_status)
-        patch.setattr(grade, "key", lambda *_: {})  # no case is ever called
+        patch.setattr(grade, "key", lambda *_, **__: {})  # no case is ever called
         patch.setattr(classroom, "Processes", Here)
         patch.setattr(commands, "console", Console(file=printed, width=1000, highlight=False, soft_wrap=True))
         failed = commands._grade(course, list(STATUSES), protected=False, jobs=1, with_feedback=False)

@@ -243,7 +243,7 @@ def test_what_is_thrown_away_may_be_anything(course, thorough):
     wanted = {name: kept(as_bytes(solution(name)), course.notebooks[name]) for name in (NAME, ANSWERED)}
 
     @settings(
-        max_examples=500 if thorough else 60, deadline=None, database=None, derandomize=True,
+        max_examples=2_000 if thorough else 60, deadline=None, database=None, derandomize=True,
         suppress_health_check=list(HealthCheck),
     )  # fmt: skip
     @given(changed_files())

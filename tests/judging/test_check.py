@@ -1,6 +1,7 @@
 """What a student sees of `check`: right, wrong, not done, and every way to call it wrongly; as text and as HTML."""
 
 import copy
+import math
 import re
 
 import numpy as np
@@ -615,6 +616,13 @@ def test_what_is_easy_to_reckon_with():
 ])  # fmt: skip
 def test_what_is_almost_a_simple_number_is_shown_as_what_it_is(number, shown):
     assert lines.row([number]) == shown
+
+
+@pytest.mark.filterwarnings("error")
+def test_what_is_no_number_is_shown_without_a_warning():
+    assert lines.row([np.float64(number) for number in (math.inf, math.nan, -math.inf)]) == lines.row(
+        [math.inf, math.nan, -math.inf]
+    )
 
 
 def test_two_that_are_not_the_same_do_not_look_the_same(said):

@@ -9,6 +9,8 @@ from numpy.linalg import inv
 from scipy.spatial.transform import Rotation
 from transform_lab import Point, Pose, PoseStamped, Quaternion, tft
 
+# Look at some of their arguments to know a call again, and take two for one when these are alike.
+CACHES = {"point_cached", "inv_cached_by_rotation", "rel_cached_inverse", "oig_cached_chain", "pg_cached"}
 WRONG = []  # (exercise, names, function): names is a tuple of misconception ids, () where no single name is fair
 
 

@@ -54,7 +54,8 @@ def _field(value):
 
 def _short(number):
     if isinstance(number, (float, np.floating)):
-        short, simple = round(float(number), 4), round(float(number), 1)
+        number = float(number)
+        short, simple = round(number, 4), round(number, 1)
         almost = short == simple and abs(number - simple) > ROUNDING  # what makes it another number has to be seen
-        return f"{round(float(number), 7):.8g}" if almost else f"{short + 0.0:g}"
+        return f"{round(number, 7):.8g}" if almost else f"{short + 0.0:g}"
     return repr(number) if isinstance(number, str) else str(number)

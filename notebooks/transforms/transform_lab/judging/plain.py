@@ -1,5 +1,6 @@
 """An exercise as plain data: what `key.json` holds of it, and what the judge draws anew for each run. See codec.py."""
 
+from collections.abc import Sequence
 from typing import Any, NotRequired, TypedDict
 
 Plain = Any  # what JSON can hold, in the forms of codec.py
@@ -22,7 +23,7 @@ class PlainCase(TypedDict):
     args: list[Plain]
     kwargs: dict[str, Plain]
     expected: Plain
-    wrong: NotRequired[list[Plain]]
+    wrong: NotRequired[Sequence[Plain]]
 
 
 class PlainMisconception(TypedDict):

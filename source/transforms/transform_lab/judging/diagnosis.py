@@ -88,16 +88,16 @@ def _explain(name, exercise, replies, outcomes, tell):
     if constant(replies):
         return _general(name, exercise, replies, outcomes, tell) if outcomes[0].problem else general("hard-coded")
     found = Diagnosis() if any(outcome.got is None for outcome in outcomes) else part_by_part(exercise, outcomes)
-    if found.ids:
+    if found:
         return found
     mutated = any(outcome.mutated for outcome in outcomes)  # what is wrong may come from the changed argument alone
     place = Diagnosis() if mutated else cut_short(exercise, outcomes) or by_place(exercise, outcomes)
     if any(outcome.problem for outcome in outcomes):
         found = _general(name, exercise, replies, outcomes, tell)
-        return found if found.ids else found._replace(ids=place.ids, hint=place.hint or found.hint)
+        return found if found else found._replace(ids=place.ids, hint=place.hint or found.hint)
     if mutated:
         return found
-    return place if place.ids else by_shape(exercise, outcomes)
+    return place or by_shape(exercise, outcomes)
 
 
 def _fit(index, exercise, replies, outcomes):

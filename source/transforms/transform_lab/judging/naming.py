@@ -47,7 +47,7 @@ GENERAL = {
     ),
     "integer-truncation": (
         "Your function goes wrong where an argument is made of whole numbers, and is right everywhere else.",
-        "An array that takes its type from such an argument, as a copy does, or `zeros_like`, keeps whole numbers alone: "
+        "An array that takes its type from whole numbers, as a copy does, or `zeros_like`, keeps whole numbers alone: "
         "begin with an array of floats, such as `np.eye(4)` or `np.zeros(3)`.",
     ),
     "zero-special-case": (

@@ -3,51 +3,52 @@
 They say what is seen, and no more: only signs are wrong, a single number is, or a predicate fails on one side alone.
 """
 
+from functools import partial
 from itertools import product
 
 import numpy as np
 
-from . import codec
-from .answers import parts_of
 from .kinds import KINDS, TOLERANCE
 from .naming import Diagnosis, general
 
 AT_LEAST, MANY = 2, 4  # failing cases: one shows nothing that they have in common; many need no number that tells
 SMALL = 0.1  # metres, or of an entry or a component
+STEPS = (0.1, 0.01, 1e-3, 1e-4, 1e-5)  # to which people round
 
 
 def by_shape(exercise, outcomes):
     """The Diagnosis of wrong answers (all of which could be compared) by what is wrong with each of them."""
-    expected, failing = _compared(exercise, outcomes)
+    failing = [outcome for outcome in outcomes if not outcome.answered]
     if exercise["returns"] == "truth":
-        deserved = {bool(right["answer"]) for _, right in failing}
-        met = {bool(right["answer"]) for outcome, right in zip(outcomes, expected) if outcome.answered}
+        deserved = {bool(outcome.expected["answer"]) for outcome in failing}
+        met = {bool(outcome.expected["answer"]) for outcome in outcomes if outcome.answered}
         one_sided = len(deserved) == 1 and not deserved >= met
         return general("too-strict" if True in deserved else "too-generous") if one_sided else Diagnosis()
-    if len(failing) < AT_LEAST or sum(part.size for part in expected[0].values()) == 1:
+    parts = KINDS[exercise["returns"]].parts
+    if len(failing) < AT_LEAST or sum(part.size for part in outcomes[0].expected.values()) == 1:
         return Diagnosis()
-    return _slip([_readings(KINDS[exercise["returns"]].parts, got, right) for got, right in failing])
+    return _slip([_readings(parts, outcome) for outcome in failing])
 
 
 def cut_short(exercise, outcomes):
     """The Diagnosis of answers whose wrong numbers are the right ones, but 0 where these are small, whole, or rounded."""
-    _, failing = _compared(exercise, outcomes)
-    if exercise["returns"] == "truth" or any(got is None for got, _ in failing):
+    failing = [outcome for outcome in outcomes if not outcome.answered]
+    if exercise["returns"] == "truth" or any(outcome.got is None for outcome in failing):
         return Diagnosis()
-    parts = KINDS[exercise["returns"]].parts
-    readings = [[list(one.values()) for one in _readings(parts, got, right)] for got, right in failing]
+    readings = [_readings(KINDS[exercise["returns"]].parts, outcome) for outcome in failing]
     for identifier, says, least, cut, telling in CUT:
-        wrong = [next((one for one in each if all(cut(w.got, w.expected) for w in one)), None) for each in readings]
-        if None not in wrong and sum(telling(w.got) for one in wrong for w in one) >= least:
+        chosen = [
+            next((one for one in each if all(cut(w.got, w.expected) for w in one.values())), None) for each in readings
+        ]
+        if None not in chosen and sum(telling(w.got) for one in chosen for w in one.values()) >= least:
             return general(identifier, says)
     return Diagnosis()
 
 
-def _to(step):
-    """Whether a number is another, rounded to steps of this size."""
-    return lambda got, expected: (
-        abs(got - step * np.round(got / step)) < 1e-9 and abs(got - expected) <= 0.5 * step + 1e-9
-    )
+def rounded_to(step, got, expected):
+    """Which numbers are others, rounded to steps of this size."""
+    with np.errstate(invalid="ignore"):  # infinity is not
+        return (np.abs(got - step * np.round(got / step)) < 1e-9) & (np.abs(got - expected) <= 0.5 * step + 1e-9)
 
 
 # What was done to numbers: the name, what to say of it, how many have to show it, what it makes of one, and whether that tells
@@ -57,20 +58,17 @@ CUT = (
         lambda got, expected: got == 0.0 and abs(expected) < SMALL, lambda got: True,
     ),
     (
-        "integer-truncation", "What is wrong in your answers are whole numbers: fractions are cut off.", AT_LEAST,
+        "integer-truncation", "The numbers that are wrong are the right ones without their fractions.", AT_LEAST,
         lambda got, expected: got == int(expected), lambda got: got != 0.0,
     ),
     *(
-        ("rounded", "What is wrong in your answers is right, but rounded.", MANY, _to(10.0**-n), lambda got: got % 1.0 != 0.0)
-        for n in range(1, 6)
+        (
+            "rounded", "The numbers that are wrong are the right ones, rounded.", MANY,
+            partial(rounded_to, step), lambda got: got % 1.0 != 0.0,
+        )
+        for step in STEPS
     ),
 )  # fmt: skip
-
-
-def _compared(exercise, outcomes):
-    """The right answers' parts, and of those that are wrong, (parts, right parts)."""
-    expected = [parts_of(exercise["returns"], codec.decode(case["expected"])) for case in exercise["cases"]]
-    return expected, [(outcome.got, right) for outcome, right in zip(outcomes, expected) if not outcome.answered]
 
 
 def _slip(failing):
@@ -96,8 +94,9 @@ class _Wrong:
         self.telling = abs(4 * expected**2 - round(4 * expected**2)) > 1e-3
 
 
-def _readings(parts, got, expected):
+def _readings(parts, outcome):
     """The wrong numbers of an answer, as [{place: _Wrong}, …]: one for each sign of its quaternion, for q and -q are the same."""
+    got, expected = outcome.got, outcome.expected
     signs = [(1, -1) if part.quaternion else (1,) for part in parts.values()]
     return [
         {

@@ -4,11 +4,11 @@ from itertools import combinations
 
 import numpy as np
 
-from . import codec
-from .answers import WRONG, as_told, parts_of
+from .answers import WRONG, as_told
 from .kinds import KINDS, TOLERANCE
 from .naming import GENERAL, Diagnosis, joined, shared
 from .plain import has_to_be_wrong, open_parts_of
+from .slips import STEPS, rounded_to
 
 OPEN = object()  # a part of an answer that may be anything
 
@@ -47,9 +47,8 @@ def _partial_explanations(exercise, outcomes):
         ):
             exact = not any(what is OPEN for one in told for what in one.values())
             (found if exact else loosely).setdefault(touched, []).append(misconception)
-    expected = [parts_of(exercise["returns"], codec.decode(case["expected"])) for case in exercise["cases"]]
     for name, part in parts.items():
-        pairs = [(outcome.got[name], right[name]) for outcome, right in zip(outcomes, expected)]
+        pairs = [(outcome.got[name], outcome.expected[name]) for outcome in outcomes]
         for identifier, fits in (("not-normalised", _not_normalised), ("rounded", _rounded)):
             if any(name not in outcome.parts for outcome in outcomes) and fits(part, pairs):
                 says, hint = GENERAL[identifier]
@@ -82,10 +81,5 @@ def _rounded(part, pairs):
     """Whether all these values are the right ones, rounded to some number of decimals."""
     signs = (1, -1) if part.quaternion else (1,)  # q and -q are the same orientation
     return any(
-        all(
-            np.abs(got - step * np.round(got / step)).max() < 1e-9
-            and any(np.abs(got - sign * right).max() <= 0.5 * step + 1e-9 for sign in signs)
-            for got, right in pairs
-        )
-        for step in (0.1, 0.01, 1e-3, 1e-4, 1e-5)
+        all(any(rounded_to(step, got, sign * right).all() for sign in signs) for got, right in pairs) for step in STEPS
     )

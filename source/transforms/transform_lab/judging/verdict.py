@@ -45,6 +45,7 @@ class Outcome:
     parts: frozenset = frozenset()  # the parts of the answer that are right
     answered: bool = False  # all of them are
     got: dict | None = None  # the answer's parts; None when nothing could be compared
+    expected: dict | None = None  # and the right answer's
     problem: tuple | None = None  # why not, or that NaN is in it: (id of a general misconception or "", what came)
     mutated: bool = False  # the call changed its arguments
     same_object: str = ""  # as in the Reply, where the answer has to be an object of its own
@@ -212,7 +213,7 @@ def compare(returns: str, case: PlainCase, reply: Reply) -> Outcome:
     good = frozenset(name for name, part in parts.items() if part.agree(got[name], expected[name]))
     problem = None if all(np.isfinite(value).all() for value in got.values()) else ("not-finite", "NaN or infinity")
     same = "" if KINDS[returns].own(reply.same_object) else reply.same_object
-    return Outcome(good, len(good) == len(parts), got, problem, mutated, same)
+    return Outcome(good, len(good) == len(parts), got, expected, problem, mutated, same)
 
 
 def _credit(exercise: PlainExercise, cases: list[PlainCase], outcomes: list[Outcome]) -> float:
