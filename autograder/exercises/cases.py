@@ -46,9 +46,8 @@ def half_turn(rng, largest=None):
     trace is exactly -1 in whatever order it is summed, so a formula that breaks at a half turn breaks in one way only.
     `largest` (0, 1, 2) is the component of the axis that is largest, for formulas that have a branch for each.
     """
-    return _half_turn_about(
-        _with_largest(largest, rng.permutation([0.36, 0.48, 0.8])) * rng.choice([-1.0, 1.0], size=3)
-    )
+    axis = _with_largest(largest, rng.permutation([0.36, 0.48, 0.8])) * rng.choice([-1.0, 1.0], size=3)
+    return _half_turn_about(axis).round(4)
 
 
 def _half_turn_about(axis):
@@ -59,7 +58,7 @@ def half_turn_to_rounding(rng):
     """A half turn about a slanted axis whose trace is a little more than -1, as it comes out of most computations."""
     axis = slanted_axis(rng)
     while True:
-        R = _half_turn_about(axis).round(15)
+        R = _half_turn_about(axis)
         if (np.trace(R) - 1.0) / 2.0 > -1.0:
             return R
         axis = nudged(axis)
@@ -206,6 +205,11 @@ def is_whole(value):
     if isinstance(value, Pose):
         return type(value.position.x) is int
     return value.dtype.kind == "i" if isinstance(value, np.ndarray) else type(value) is int
+
+
+def whole_but_for_rounding(numbers):
+    """Whether one of the numbers is a whole one, and not 0, but for rounding: cut off, its fraction may take a 1 along."""
+    return bool(np.any((np.abs(numbers) > 0.5) & (np.abs(numbers - np.round(numbers)) < 1e-9)))
 
 
 def generic_transform(rng):

@@ -122,6 +122,11 @@ def near_half_turns(R):
     return np.trace(R) < NEAR_HALF
 
 
+def short_of_half_turns(R):
+    """Where the trace formula's w is what rounding leaves of it; at a trace of -1 it is 0 for everybody."""
+    return np.trace(R) != -1.0 and near_half_turns(R)
+
+
 def at_negative_trace(R):
     return NEAR_HALF < np.trace(R) < -MARGIN
 

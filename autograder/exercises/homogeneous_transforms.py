@@ -32,6 +32,7 @@ from .cases import (
     transform,
     vector,
     whole,
+    whole_but_for_rounding,
     whole_pose,
     whole_transform,
     wide_turn,
@@ -57,6 +58,7 @@ from .conversions import (
     near_gimbal_lock,
     near_half_turns,
     plain_angles,
+    short_of_half_turns,
     slips,
     trace_formula,
     trace_formula_guarded,
@@ -518,14 +520,20 @@ TRANSFORM_TO_POSE = Exercise(
             varies=at_lock(lambda matrix: matrix),
         ),
         *(
+            Misconception(
+                "trace-formula-only",
+                _to_pose_with(orientation=orientation),
+                *BREAKS_AT_HALF_TURN,
+                **open_where(short_of_half_turns, lambda R: False, lambda matrix: matrix),
+            )
+            for orientation in (trace_formula, trace_formula_in_plain_python, axis_and_angle)
+        ),
+        *(
             Misconception("trace-formula-only", _to_pose_with(orientation=orientation), *BREAKS_AT_HALF_TURN)
             for orientation in (
-                trace_formula,
-                trace_formula_in_plain_python,
                 half_turn_by_tolerance,
                 lengths_with_signs(np.copysign),
                 lengths_with_signs(lambda sizes, differences: sizes * np.sign(differences)),
-                axis_and_angle,
             )
         ),
         Misconception("position-missing", _to_pose_with(position=lambda matrix: (0, 0, 0)), *POSITION_LEFT_OUT),
@@ -668,7 +676,12 @@ POSE_TO_TRANSFORM = Exercise(
             lambda pose: _turned(pose) @ _from_pose_with(lambda q: np.eye(3))(pose),
             *TRANSLATION_TURNED,
         ),
-        Misconception("integer-truncation", lambda pose: np.trunc(pose_to_transform(pose)), *TRUNCATED),
+        Misconception(
+            "integer-truncation",
+            lambda pose: np.trunc(pose_to_transform(pose)),
+            *TRUNCATED,
+            varies=lambda pose: ("rotation",) if whole_but_for_rounding(matrix(pose)[:3, :3]) else (),
+        ),
         Misconception(
             "elementwise-product",
             lambda pose: _turned(pose) * _from_pose_with(lambda q: np.eye(3))(pose),

@@ -895,15 +895,15 @@ def _shifted(q, by):
 
 def _longer_than_1(rng):
     """A unit quaternion whose product with itself is a little more than 1, in whatever order it is summed."""
-    q = quaternion(rotation(rng)).round(15)
+    q = quaternion(rotation(rng))
     while min(q @ q, np.sum(q * q), sum(q * q), sum((q * q)[::-1])) <= 1.0:
-        q = nudged(q).round(15)
+        q = nudged(q)
     return q
 
 
 def _hardly_shorter_than_1(q):
     """A quaternion whose product with itself is less than 1, as it comes of rounding, in whatever order it is summed."""
-    return np.trunc(q * 1e15) / 1e15
+    return (1.0 - 4.0 * np.finfo(float).eps) * q
 
 
 def _around_zeros(q):
@@ -919,7 +919,7 @@ def _unequal(q, number, by):
     """q with a number a little larger in size, and the next as much smaller."""
     changed = np.abs(q)
     changed[[number, number + 1]] += by, -by
-    return np.copysign(changed, q)
+    return np.copysign(changed / np.linalg.norm(changed), q)
 
 
 def same_rotation_cases(rng):

@@ -22,7 +22,7 @@ from .draws import PUBLIC_SEED, Draws
 from .features import Feature, special_of
 
 ORDER = 1  # with the seed, what the order of the cases is drawn from
-DIGITS_OF_ARGUMENTS = 15  # decimals: nearly all there are, without the noise that sines and products leave at zero
+NOISE = 1e-15  # an argument smaller than that is what sines and products leave in the place of zero
 DIGITS = 12  # of right answers: far below the tolerance of 1e-6
 DIGITS_WRONG = 7  # of wrong ones, which are most of the key
 PROTOCOL = 4  # of pickle; from 5 on, arrays do not own their numbers
@@ -169,8 +169,8 @@ class Arguments:
 
 
 def _case(exercise, case, when_asked) -> PlainCase:
-    args = [_rounded(codec.encode(arg), DIGITS_OF_ARGUMENTS) for arg in case.args]
-    kwargs = {name: _rounded(codec.encode(arg), DIGITS_OF_ARGUMENTS) for name, arg in case.kwargs.items()}
+    args = [_each_float(codec.encode(arg), _without_noise) for arg in case.args]
+    kwargs = {name: _each_float(codec.encode(arg), _without_noise) for name, arg in case.kwargs.items()}
     fresh = Arguments(args, kwargs).fresh
     expected = _answer(exercise.reference, fresh)
     right = _parts_of_the_right(exercise, case, expected)
@@ -246,11 +246,21 @@ def _short(number):
     return int(short) if short.is_integer() else short
 
 
+def _without_noise(number):
+    """An argument with all its digits: libraries that are strict about rotations take nothing less."""
+    return number if abs(number) >= NOISE else 0.0
+
+
 def _rounded(plain, digits=DIGITS):
+    return _each_float(plain, lambda number: round(number, digits) + 0.0)
+
+
+def _each_float(plain, changed):
+    """Plain data with each float in it replaced by what `changed` makes of it."""
     if isinstance(plain, float):
-        return round(plain, digits) + 0.0
+        return changed(plain)
     if isinstance(plain, list):
-        return [round(item, digits) + 0.0 if type(item) is float else _rounded(item, digits) for item in plain]
+        return [changed(item) if type(item) is float else _each_float(item, changed) for item in plain]
     if isinstance(plain, dict):
-        return {name: _rounded(item, digits) for name, item in plain.items()}
+        return {name: _each_float(item, changed) for name, item in plain.items()}
     return plain

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from . import libraries
+
 # How far a rotation's entries may be off: 0.707 for cos 45 degrees passes, as it does in ROS.
 TOLERANCE = 1e-3
 NEAREST = 1e-5  # metres; smaller things cannot be seen
@@ -14,6 +16,8 @@ def numbers(value, what, lengths=None):
     With `lengths`, the result is a vector of one of these lengths. Raises TypeError if `value` is not made of numbers
     (a message, say), ValueError for another length, unequal rows, NaN or infinity.
     """
+    if libraries.is_matrix(value):
+        raise TypeError(f"{what} must be a plain array of numbers, not a {libraries.described(value)}")
     for fields, spelling in [("xyzw", "q"), ("xyz", "p")]:
         if all(hasattr(value, field) for field in fields):
             spelled_out = ", ".join(f"{spelling}.{field}" for field in fields)

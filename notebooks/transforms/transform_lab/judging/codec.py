@@ -10,6 +10,7 @@ notebook. Whatever an object claims about itself, only these numbers reach the j
 | list                                  | a list                                                       |
 | tuple                                 | `{"tuple": [things]}`                                        |
 | numeric array, `np.matrix`, scalar    | `{"array": [numbers, row by row], "shape": [rows, columns]}` |
+| an object of another library           | what it stands for, see transform_lab.libraries              |
 | message, or any object with its fields | `{"message": "Pose", "fields": {"position": …, …}}`         |
 | anything else                         | `{"other": "name of its type"}`                              |
 """
@@ -19,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from .. import messages
+from .. import libraries, messages
 from .plain import Plain
 
 LARGEST_ARRAY = 1_000  # numbers; the largest right answer has 16
@@ -63,8 +64,7 @@ def encode(value: object, depth: int = 0, room: list[int] | None = None) -> Plai
     if depth >= DEEPEST or isinstance(value, type):  # a class has its messages' fields, too
         return _other(value)
     if (name := _message(value)) is not None:
-        fields = {field: encode(getattr(value, field), depth + 1, room) for field in MESSAGES[name]}
-        return {"message": name, "fields": fields}
+        return {"message": name, "fields": {field: _field(value, field, depth, room) for field in MESSAGES[name]}}
     if isinstance(value, (list, tuple)) and len(value) <= LONGEST_LIST:
         if room is not None:
             return _things(value, depth, room)
@@ -72,7 +72,14 @@ def encode(value: object, depth: int = 0, room: list[int] | None = None) -> Plai
             return _things(value, depth, [LARGEST_ARRAY])
         except _Full:
             return _other(value)
-    return _other(value)
+    found = None if isinstance(value, (list, tuple)) else libraries.taken(value)
+    return _other(value) if found is None else encode(found, depth, room)
+
+
+def _field(message, field, depth, room):
+    """A field of a message; another library's rotation is no Quaternion, and is called what it is."""
+    value = getattr(message, field)
+    return _other(value, libraries.TO_QUATERNION) if libraries.is_matrix(value) else encode(value, depth + 1, room)
 
 
 def _things(value, depth, room):
@@ -94,6 +101,8 @@ def _take(room, things):
 
 def _message(value):
     """The name of the message that has the fields of `value`, or None."""
+    if libraries.is_matrix(value):  # spatialmath's SE3 has x, y and z
+        return None
     for name, fields in MESSAGES.items():
         for field in fields:
             if not hasattr(value, field):
@@ -169,14 +178,16 @@ def _number(value):
     return value if math.isfinite(value) else {"float": repr(value)}
 
 
-def _other(value):
-    name = f"class {value.__name__}" if isinstance(value, type) else type(value).__name__
+def _other(value, calls=libraries.CALLS):
+    name = f"class {value.__name__}" if isinstance(value, type) else libraries.described(value, calls)
     return {"other": name[:LONGEST_TEXT]}
 
 
 def _array(value):
     if value.size > LARGEST_ARRAY or value.ndim > DEEPEST or max(value.shape, default=0) > LARGEST_ARRAY:
         return {"other": f"array of shape {value.shape}"}
+    if value.dtype.kind == "O" and (found := libraries.taken(value)) is not None:
+        value = np.asarray(found)
     if value.dtype.kind not in "biuf":
         return {"other": f"array of {value.dtype}"[:LONGEST_TEXT]}
     if value.ndim == 0:

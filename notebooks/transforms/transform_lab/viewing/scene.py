@@ -6,7 +6,7 @@ from numbers import Integral
 
 import numpy as np
 
-from .. import tft
+from .. import libraries, tft
 from ..messages import Marker
 from ..validation import FARTHEST, NEAREST, numbers, rigid_transform, row_text, within_reach
 from .shapes import BROWN, ORANGE, PURPLE, STEEL, X_RED, Y_GREEN, Z_BLUE, Node, draw_marker, marker_type, rgba, xyz
@@ -113,9 +113,10 @@ class Scene:
     def add_frame(self, name, transform, parent=None, length=None, ghost=False):
         """Add the frame `name`, or replace it: `transform` describes it in the frame `parent`.
 
-        `transform` is a 4x4 homogeneous transform parent_T_name, a Pose, or a PoseStamped, whose header.frame_id then
-        is the parent. The parent must be known; by default it is the root, the frame that the viewer was made with. `length` is
-        how long the axes are drawn, in metres; by default the size of the scene decides. A `ghost` is translucent.
+        `transform` is a 4x4 homogeneous transform parent_T_name (an array, or an object that is one, such as SciPy's
+        RigidTransform), a Pose, or a PoseStamped, whose header.frame_id then is the parent. The parent must be known; by default
+        it is the root, the frame that the viewer was made with. `length` is how long the axes are drawn, in metres; by default
+        the size of the scene decides. A `ghost` is translucent.
 
         Raises ValueError for a parent that is not known, and for what is no rigid transform, naming the property that
         fails: shape, NaN, bottom row, columns at right angles and of length 1, determinant +1, quaternion of length 1.
@@ -289,6 +290,7 @@ class Scene:
                 raise ValueError(f"{kind}={frame!r}, but header.frame_id is {pose.header.frame_id!r}")
             frame, pose = pose.header.frame_id, pose.pose
         frame = self._known(frame, f"{what}: the {kind}")
+        pose = libraries.taken(pose) if libraries.is_matrix(pose) else pose
         if hasattr(pose, "orientation"):
             matrix = _pose_matrix(pose, f"{what}: the pose")
         else:

@@ -1,8 +1,12 @@
 """An answer as numbers, or why it is none: what the kinds of answers (kinds.py) are read with."""
 
+import re
+
 import numpy as np
 
 from . import codec
+
+METHODS = ("method", "builtin_function_or_method", "instancemethod")
 
 
 class Unfit(ValueError):
@@ -77,6 +81,8 @@ def _components(message, name, letters):
     for index, (letter, value) in enumerate(zip(letters, values)):
         if isinstance(value, np.ndarray) and value.size == 1:
             values[index] = value = value.item()
+        if isinstance(value, codec.Other) and value.type_name in METHODS:
+            raise Unfit("wrong-type", f"a method instead of a number in {name}.{letter}: call it, as in {letter}(),")
         if not isinstance(value, (bool, int, float)):
             raise Unfit("wrong-type", f"{type_in_words(value)} instead of a number in {name}.{letter}")
     return np.array(values, dtype=np.float64)
@@ -93,4 +99,4 @@ def type_in_words(answer):
     name = answer.type_name if isinstance(answer, codec.Other) else type(answer).__name__
     if name.startswith("class "):
         return f"the {name} itself, without parentheses,"
-    return f"{'an' if name[:1].lower() in 'aeiou' else 'a'} {name}"
+    return f"{'an' if re.match('[aeio]|u(?!ni)', name, re.IGNORECASE) else 'a'} {name}"

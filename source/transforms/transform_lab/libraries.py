@@ -1,0 +1,113 @@
+"""What objects of other libraries hold, as NumPy's and Python's own numbers. They are known by their names and protocols.
+
+| object                                                       | taken as                                        |
+|--------------------------------------------------------------|-------------------------------------------------|
+| what NumPy takes for an array: JAX, Torch, SymPy, Pinocchio  | the array                                       |
+| one rotation or transform: SciPy, spatialmath, Drake, jaxlie | its 3x3 or 4x4 matrix, the one thing that it says |
+| a number of SymPy, Fraction, Decimal, mpmath, …              | a float, an int where it is whole by its type   |
+| a truth of SymPy, …                                          | True, False                                     |
+
+A quaternion is none of these: which of its numbers is w, only the names of its fields tell.
+"""
+
+import re
+from collections.abc import Sequence
+from functools import cache
+from numbers import Integral
+
+import numpy as np
+
+MOST = 1_000  # numbers of one object
+
+# (library, class) of what is one matrix and nothing else, and the attribute or method that gives it
+MATRICES = {
+    ("scipy", "Rotation"): "as_matrix",
+    ("scipy", "RigidTransform"): "as_matrix",
+    ("jaxlie", "SO3"): "as_matrix",
+    ("jaxlie", "SE3"): "as_matrix",
+    ("spatialmath", "SO3"): "A",
+    ("spatialmath", "SE3"): "A",
+    ("pydrake", "RotationMatrix"): "matrix",
+    ("pydrake", "RigidTransform"): "GetAsMatrix4",
+    ("pydrake", "Isometry3"): "matrix",
+}
+# What makes an array of an object that is not taken by itself; the first that it has is named
+CALLS = (
+    "as_matrix()", "GetAsMatrix4()", "detach().cpu().numpy()", "to_numpy()", "toarray()", "homogeneous_matrix()",
+    "ToRotationMatrix()", "R", "SE3().A", "rotation()", "matrix()",
+)  # fmt: skip
+TO_QUATERNION = ("as_quat()", "ToQuaternion()", *CALLS)  # in the field of a message
+FIELDS = "xyzw"  # of a quaternion
+
+
+def is_matrix(value):
+    """Whether `value` is a rotation or a transform of another library, of which this module knows the matrix."""
+    return _giver(type(value)) is not None
+
+
+def taken(value):
+    """The array, float, int or bool that `value` stands for; None for what has none, whatever it raises when it is asked."""
+    try:
+        if is_matrix(value):
+            return _matrix(value)
+        if hasattr(value, "__array__") or _is_sequence(value):
+            return _array(np.asarray(value))
+        return _number(value)
+    except (
+        Exception
+    ):  # its own: of SymPy's symbols, of tensors with gradients or elsewhere, of rows that differ in length, …
+        return None
+
+
+def described(value, calls=CALLS):
+    """The name of an object's type; with the call that makes an array of it, where it has one of these."""
+    kind = type(value)
+    call = next((call for call in calls if hasattr(kind, re.split(r"\W", call)[0])), None)
+    return f"{kind.__name__} (.{call} makes an array of it)" if call else kind.__name__
+
+
+@cache
+def _giver(kind):
+    """The attribute or method that gives the one matrix of objects of this type; None for any other type."""
+    classes = ((str(one.__module__).partition(".")[0], one.__name__) for one in kind.__mro__)
+    return next((MATRICES[one] for one in classes if one in MATRICES), None)
+
+
+def _matrix(value):
+    """The matrix of a rotation or transform; of several, all of them as an array of three dimensions."""
+    found = getattr(value, _giver(type(value)))
+    return np.array(found() if callable(found) else found)
+
+
+def _is_sequence(value):
+    """Whether NumPy takes it apart as it does a list: a range, an array of Python's, SymPy's Array."""
+    if not (isinstance(value, (Sequence, memoryview)) or hasattr(value, "tolist")):
+        return False
+    return not hasattr(value, "matrix") and hasattr(value, "__getitem__") and len(value) <= MOST
+
+
+def _array(array):
+    """An array of numbers or truths; of objects, one with what each of them is taken for."""
+    if array.dtype.kind in "biuf":
+        return array if array.ndim else array.item()
+    if array.dtype.kind != "O" or array.size > MOST or not array.ndim:
+        return None
+    found = [_number(item) for item in array.flat]
+    return None if None in found else np.array(found).reshape(array.shape)
+
+
+def _number(value):
+    """The float, int or bool that a number or a truth is, None for what is none, or would lose something as a float."""
+    if isinstance(value, (bool, np.bool_)):
+        return bool(value)
+    if isinstance(value, Integral):
+        return int(value)
+    if hasattr(value, "__array__"):
+        found = np.asarray(value)
+        return found.item() if found.ndim == 0 and found.dtype.kind in "biuf" else None
+    if isinstance(value, str) or all(hasattr(value, field) for field in FIELDS) or np.iscomplexobj(value):
+        return None
+    if hasattr(type(value), "__float__"):
+        return float(value)
+    truth = next((truth for truth in (True, False) if (value == truth) is True), None)
+    return truth if hasattr(type(value), "__bool__") else None
