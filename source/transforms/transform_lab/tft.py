@@ -23,23 +23,27 @@ Arguments may be lists, tuples, arrays of any number type, or ``np.matrix``; the
 float64 arrays. Unlike ROS, whose results for wrong input are silently wrong, a matrix that is not a rigid transform
 raises ValueError and the message says which property fails.
 
+Of q and -q, and of the angles that describe one and the same rotation, the one that ROS gives is given here, too. What ROS
+has beside the functions below (cameras' projections, shears, crystals, an arcball) is not here.
+
 Source: names, signatures and conventions follow C. Gohlke's ``transformations.py`` as shipped with ROS 1; rotation
-arithmetic is SciPy's ``Rotation``. Of the angles that describe one and the same rotation, SciPy and ROS may choose
-different ones (the middle angle's range, and half turns of it).
+arithmetic is SciPy's ``Rotation``.
 """
 
 import math
+import warnings
 
 import numpy as np
 
-from .validation import numbers, rigid_transform
+from .validation import numbers, rigid_transform, shape_text
 
 __all__ = [
-    "concatenate_matrices", "euler_from_matrix", "euler_from_quaternion", "euler_matrix", "identity_matrix",
-    "inverse_matrix", "quaternion_about_axis", "quaternion_conjugate", "quaternion_from_euler",
-    "quaternion_from_matrix", "quaternion_inverse", "quaternion_matrix", "quaternion_multiply", "quaternion_slerp",
-    "random_quaternion", "random_rotation_matrix", "rotation_from_matrix", "rotation_matrix",
-    "translation_from_matrix", "translation_matrix", "unit_vector", "vector_norm",
+    "compose_matrix", "concatenate_matrices", "decompose_matrix", "euler_from_matrix", "euler_from_quaternion", "euler_matrix",
+    "identity_matrix", "inverse_matrix", "is_same_transform", "quaternion_about_axis", "quaternion_conjugate",
+    "quaternion_from_euler", "quaternion_from_matrix", "quaternion_inverse", "quaternion_matrix", "quaternion_multiply",
+    "quaternion_slerp", "random_quaternion", "random_rotation_matrix", "random_vector", "reflection_matrix",
+    "rotation_from_matrix", "rotation_matrix", "scale_matrix", "superimposition_matrix", "translation_from_matrix",
+    "translation_matrix", "unit_vector", "vector_norm",
 ]  # fmt: skip
 
 _EPS = np.finfo(float).eps * 4.0  # below this squared length, ROS takes a quaternion for zero
@@ -59,9 +63,31 @@ def _matrix(rotation):
     return T
 
 
+def __getattr__(name):
+    raise AttributeError(f"tft.{name} is not here. There is what the lab uses and its kin: {', '.join(__all__)}")
+
+
 def _vector(value, what):
     """Return the first three of 3 or 4 (homogeneous) numbers."""
     return numbers(value, what, lengths=(3, 4))[:3]
+
+
+def _number(value, what):
+    """Return a single number, such as an angle, as a float."""
+    number = numbers(value, what)
+    if number.size != 1:
+        raise TypeError(f"{what} must be a single number; got {shape_text(number)}")
+    return number.item()
+
+
+def _keeping(linear, point, what):
+    """Return the 4x4 matrix with this 3x3 part that leaves `point` (by default the origin) where it is."""
+    T = np.eye(4)
+    T[:3, :3] = linear
+    if point is not None:
+        p = _vector(point, what)
+        T[:3, 3] = p - linear @ p  # R p + t = p
+    return T
 
 
 # Matrices
@@ -90,11 +116,8 @@ def rotation_matrix(angle, direction, point=None):
     The axis goes through `point`, by default through the origin. `direction` may have any length but zero.
     """
     axis = unit_vector(_vector(direction, "rotation_matrix: the direction"))
-    T = _matrix(_rotation().from_rotvec(angle * axis))
-    if point is not None:
-        p = _vector(point, "rotation_matrix: the point")
-        T[:3, 3] = p - T[:3, :3] @ p  # the point stays where it is: R p + t = p
-    return T
+    rotation = _rotation().from_rotvec(_number(angle, "rotation_matrix: the angle") * axis)
+    return _keeping(rotation.as_matrix(), point, "rotation_matrix: the point")
 
 
 def rotation_from_matrix(matrix):
@@ -131,35 +154,176 @@ def concatenate_matrices(*matrices):
     return product
 
 
+def is_same_transform(matrix0, matrix1):
+    """Return whether two 4x4 matrices do the same to points: to NumPy's tolerance, whatever common factor they have."""
+    one, other = (_homogeneous(matrix, "is_same_transform: each argument") for matrix in (matrix0, matrix1))
+    return bool(np.allclose(one, other))
+
+
+def _homogeneous(matrix, what):
+    """Return a 4x4 matrix divided by its last entry, which may not be 0."""
+    M = numbers(matrix, what)
+    if M.shape != (4, 4):
+        raise ValueError(f"{what} must be a 4x4 matrix; got {shape_text(M)}")
+    if abs(M[3, 3]) < _EPS:
+        raise ValueError(f"{what} has a 0 at its lower right, so that it has no position")
+    return M / M[3, 3]
+
+
+# Matrices that are no rigid transforms
+
+
+def reflection_matrix(point, normal):
+    """Return the 4x4 matrix that mirrors at the plane through `point` with this `normal` (any length but zero)."""
+    n = unit_vector(_vector(normal, "reflection_matrix: the normal"))
+    return _keeping(np.eye(3) - 2.0 * np.outer(n, n), point, "reflection_matrix: the point")
+
+
+def scale_matrix(factor, origin=None, direction=None):
+    """Return the 4x4 matrix that scales by `factor` from `origin`, by default the frame's; with `direction` along it alone."""
+    change = _number(factor, "scale_matrix: the factor") - 1.0
+    along = np.eye(3)
+    if direction is not None:
+        d = unit_vector(_vector(direction, "scale_matrix: the direction"))
+        along = np.outer(d, d)
+    return _keeping(np.eye(3) + change * along, origin, "scale_matrix: the origin")
+
+
+def compose_matrix(scale=None, shear=None, angles=None, translate=None, perspective=None):
+    """Return the 4x4 matrix that scales, shears, rotates, translates and projects, in this order; what is None is left out.
+
+    `scale`: 3 factors along x, y, z; `shear`: 3 factors of x by y, x by z, y by z; `angles`: roll, pitch, yaw in radians (axes
+    'sxyz'); `translate`: 3 numbers; `perspective`: the 4 numbers of the bottom row. See `decompose_matrix`.
+    """
+    M = np.eye(4)
+    if perspective is not None:
+        M[3] = numbers(perspective, "compose_matrix: perspective", lengths=(4,))
+    if translate is not None:
+        M = M @ translation_matrix(translate)
+    if angles is not None:
+        M = M @ euler_matrix(*numbers(angles, "compose_matrix: angles", lengths=(3,)))
+    if shear is not None:
+        sheared = np.eye(4)
+        sheared[[0, 0, 1], [1, 2, 2]] = numbers(shear, "compose_matrix: shear", lengths=(3,))
+        M = M @ sheared
+    if scale is not None:
+        M = M @ np.diag(np.append(numbers(scale, "compose_matrix: scale", lengths=(3,)), 1.0))
+    return _homogeneous(M, "compose_matrix: the product")
+
+
+def decompose_matrix(matrix):
+    """Return scale, shear, angles, translate and perspective of a 4x4 matrix, a tuple: what `compose_matrix` takes.
+
+    Of a rigid transform, `angles` are its roll, pitch and yaw, and `translate` is its translation. A mirror image gets three
+    negative scale factors. Raises ValueError for a matrix that cannot be inverted.
+    """
+    M = _homogeneous(matrix, "decompose_matrix: the matrix")
+    affine = np.vstack([M[:3], [0.0, 0.0, 0.0, 1.0]])
+    if not np.linalg.det(affine):
+        raise ValueError("decompose_matrix: the matrix cannot be inverted: its determinant is 0")
+    R, U = np.linalg.qr(M[:3, :3])  # a rotation, then all else: in a triangle
+    signs = np.sign(np.diag(U)) * np.sign(np.linalg.det(M[:3, :3]))
+    R, U = R * signs, signs[:, None] * U
+    scale = np.diag(U).copy()
+    return (
+        scale,
+        list((U / scale)[[0, 0, 1], [1, 2, 2]]),
+        list(_euler(R, "sxyz")),
+        M[:3, 3].copy(),
+        M[3] @ np.linalg.inv(affine),
+    )
+
+
+def superimposition_matrix(v0, v1, scaling=False, usesvd=True):
+    """Return the 4x4 transform that brings the points `v0` as near as can be to the points `v1`: the least sum of squares.
+
+    Both are arrays of shape (3, n), or (4, n) with homogeneous coordinates: a point in each column, at least three of them. With
+    `scaling`, all may be made larger or smaller, too, by the root of the ratio of both sets' squared distances from their middle.
+    `usesvd` has no effect. Source: W. Kabsch, "A solution for the best rotation to relate two sets of vectors", Acta
+    Crystallographica A32, 1976.
+    """
+    v0, v1 = (numbers(v, "superimposition_matrix: each set of points") for v in (v0, v1))
+    if v0.shape != v1.shape or v0.ndim != 2 or v0.shape[0] not in (3, 4) or v0.shape[1] < 3:
+        raise ValueError(
+            "superimposition_matrix: both sets must have the shape (3, n) or (4, n) with three points or more; they have"
+            f" {v0.shape} and {v1.shape}"
+        )
+    middles = [v[:3].mean(axis=1) for v in (v0, v1)]
+    first, second = (v[:3].T - middle for v, middle in zip((v0, v1), middles))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of points in a line, which do not say how far they are turned about it
+        linear = _rotation().align_vectors(second, first)[0].as_matrix()
+    if scaling:
+        linear *= math.sqrt(np.sum(second**2) / np.sum(first**2))
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = linear, middles[1] - linear @ middles[0]
+    return T
+
+
 # Euler angles
 
 
-def _scipy_axes(axes):
-    """Return SciPy's name for ROS's Euler axes: lower case about fixed axes, upper case about the moving frame's."""
-    frame, sequence = axes[:1].lower(), axes[1:].lower()
+def _axes(axes):
+    """Return the frame, 's' or 'r', and the three axes, such as 'xyz', of ROS's Euler axes: a name, or its tuple of four."""
+    if isinstance(axes, tuple) and len(axes) == 4 and axes[0] in (0, 1, 2) and set(axes[1:]) <= {0, 1}:
+        first, parity, repetition, rotating = axes
+        order = [first, (first + 1 + parity) % 3, first if repetition else (first + 2 - parity) % 3]
+        return "sr"[rotating], "".join("xyz"[axis] for axis in (order[::-1] if rotating else order))
+    name = axes.lower() if isinstance(axes, str) else ""
+    frame, sequence = name[:1], name[1:]
     legal = len(sequence) == 3 and set(sequence) <= set("xyz") and sequence[1] not in (sequence[0], sequence[2])
     if frame not in ("s", "r") or not legal:
         raise ValueError(
             f"no such Euler axes: {axes!r}. Write 's' (fixed axes) or 'r' (rotating axes) and three of x, y, z, the"
             " same never twice running, such as 'sxyz' or 'rzyx'"
         )
-    return sequence if frame == "s" else sequence.upper()
+    return frame, sequence
+
+
+def _from_euler(ai, aj, ak, axes, what):
+    """Return SciPy's Rotation by three angles."""
+    frame, sequence = _axes(axes)
+    angles = [_number(angle, f"{what}: {name}") for angle, name in ((ai, "ai"), (aj, "aj"), (ak, "ak"))]
+    # SciPy's name for the axes: lower case about fixed ones, upper case about the moving frame's
+    return _rotation().from_euler(sequence if frame == "s" else sequence.upper(), angles)
+
+
+def _euler(R, axes):
+    """Return the three angles about `axes` of a 3x3 rotation, the ones that ROS chooses.
+
+    Source: K. Shoemake, "Euler angle conversion", Graphics Gems IV, 1994.
+    """
+    frame, sequence = _axes(axes)
+    order = ["xyz".index(axis) for axis in (sequence if frame == "s" else sequence[::-1])]
+    i, j = order[:2]
+    k = 3 - i - j
+    if i == order[2]:
+        across = math.hypot(R[i, j], R[i, k])
+        first, second, third = (R[i, j], R[i, k]), (across, R[i, i]), (R[j, i], -R[k, i])
+    else:
+        across = math.hypot(R[i, i], R[j, i])
+        first, second, third = (R[k, j], R[k, k]), (-R[k, i], across), (R[j, i], R[i, i])
+    if across <= _EPS:  # gimbal lock: the first and the third turn about one axis
+        first, third = (-R[j, k], R[j, j]), (0.0, 1.0)
+    sign = 1.0 if (j - i) % 3 == 1 else -1.0
+    angles = tuple(sign * math.atan2(*pair) for pair in (first, second, third))
+    return angles if frame == "s" else angles[::-1]
 
 
 def euler_matrix(ai, aj, ak, axes="sxyz"):
     """Return the 4x4 rotation by the angles `ai`, `aj`, `ak` (radians) about `axes`, in this order."""
-    return _matrix(_rotation().from_euler(_scipy_axes(axes), [ai, aj, ak]))
+    return _matrix(_from_euler(ai, aj, ak, axes, "euler_matrix"))
 
 
 def euler_from_matrix(matrix, axes="sxyz"):
-    """Return the three Euler angles (radians, a tuple) about `axes` of a 4x4 transform's rotation.
+    """Return the three Euler angles (radians, a tuple) about `axes` of the rotation in a 4x4 transform, or of a 3x3 one.
 
-    At gimbal lock many triples are right; the one returned has 0 for the third.
+    At gimbal lock many triples are right; the one returned has 0 for the third angle, or with rotating axes for the first.
     """
-    R = rigid_transform(matrix, "euler_from_matrix: the matrix")[:3, :3]
-    # SciPy warns at gimbal lock; text on stderr would cost a student the points of the cell.
-    angles = _rotation().from_matrix(R).as_euler(_scipy_axes(axes), suppress_warnings=True)
-    return tuple(angles.tolist())
+    M = numbers(matrix, "euler_from_matrix: the matrix")
+    if M.shape == (3, 3):  # as ROS takes it
+        M = np.block([[M, np.zeros((3, 1))], [np.zeros((1, 3)), 1.0]])
+    return _euler(rigid_transform(M, "euler_from_matrix: the matrix")[:3, :3], axes)
 
 
 def euler_from_quaternion(quaternion, axes="sxyz"):
@@ -169,7 +333,7 @@ def euler_from_quaternion(quaternion, axes="sxyz"):
 
 def quaternion_from_euler(ai, aj, ak, axes="sxyz"):
     """Return the quaternion x, y, z, w of the rotation by `ai`, `aj`, `ak` (radians) about `axes`, in this order."""
-    return _rotation().from_euler(_scipy_axes(axes), [ai, aj, ak]).as_quat()
+    return _from_euler(ai, aj, ak, axes, "quaternion_from_euler").as_quat()
 
 
 # Quaternions
@@ -194,13 +358,16 @@ def quaternion_from_matrix(matrix):
 
     Raises ValueError unless the matrix is 4x4 and a rigid transform (to 1e-3), naming the property that fails.
     """
-    T = rigid_transform(matrix, "quaternion_from_matrix: the matrix")
-    return _rotation().from_matrix(T[:3, :3]).as_quat()
+    R = rigid_transform(matrix, "quaternion_from_matrix: the matrix")[:3, :3]
+    q = _rotation().from_matrix(R).as_quat()
+    positive = 3 if np.trace(R) > 0 else int(np.argmax(np.diag(R)))  # in ROS; q and -q are the same orientation
+    return q if q[positive] >= 0 else -q
 
 
 def quaternion_about_axis(angle, axis):
     """Return the quaternion x, y, z, w of the rotation by `angle` (radians) about `axis` (any length but zero)."""
     axis = unit_vector(_vector(axis, "quaternion_about_axis: the axis"))
+    angle = _number(angle, "quaternion_about_axis: the angle")
     return np.append(math.sin(angle / 2) * axis, math.cos(angle / 2))
 
 
@@ -271,18 +438,29 @@ def random_rotation_matrix(rand=None):
 # Vectors
 
 
-def vector_norm(data, axis=None):
-    """Return the length of a vector, or the lengths of an array's vectors along `axis`."""
-    return np.linalg.norm(numbers(data, "vector_norm: the data"), axis=axis)
+def random_vector(size):
+    """Return `size` random numbers from 0 to 1, an array; `size` may be a shape."""
+    return np.random.random(size)
 
 
-def unit_vector(data, axis=None):
-    """Return a vector at length 1, or an array with its vectors along `axis` at length 1.
+def vector_norm(data, axis=None, out=None):
+    """Return the length of a vector, or the lengths of an array's vectors along `axis`; with `out`, write them there instead."""
+    lengths = np.linalg.norm(numbers(data, "vector_norm: the data"), axis=axis)
+    if out is None:
+        return lengths
+    out[...] = lengths
+
+
+def unit_vector(data, axis=None, out=None):
+    """Return a vector at length 1, or an array with its vectors along `axis`; with `out`, write them there instead.
 
     Raises ValueError for a vector of zeros, which has no direction.
     """
     array = numbers(data, "unit_vector: the data")
     lengths = np.linalg.norm(array, axis=axis, keepdims=axis is not None)
-    if np.any(lengths == 0):
+    if array.size and np.any(lengths == 0):
         raise ValueError("a vector of zeros has no direction")
-    return array / lengths
+    array /= lengths if array.size else 1.0
+    if out is None:
+        return array
+    out[...] = array

@@ -27,8 +27,11 @@ def numbers(value, what, lengths=None):
     if value is None:
         raise TypeError(f"{what} must be made of numbers; got None. Does your function return its result?")
     try:
-        if np.ma.is_masked(value) or np.iscomplexobj(value):
-            raise TypeError  # NumPy would drop imaginary parts, and show what is masked
+        kind = np.asarray(value).dtype.kind
+        if np.ma.is_masked(value) or kind in "cSU":
+            raise TypeError  # NumPy would drop imaginary parts, show what is masked, and read numbers in texts
+        if kind == "O" and any(item is None or isinstance(item, (str, bytes)) for item in np.asarray(value).flat):
+            raise TypeError
         array = np.array(value, dtype=np.float64)
     except TypeError:
         raise TypeError(f"{what} must be made of numbers; got {type(value).__name__}") from None
