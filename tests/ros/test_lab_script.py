@@ -19,9 +19,9 @@ def without_imports(path):
     return [line for line in path.read_text().splitlines() if not re.match(r"(from|import) ", line)]
 
 
-def solved():
+def solved(path=HERE):
     """The script as a student leaves it: the TODO done and the last part uncommented."""
-    text = HERE.read_text().replace("# TODO: fill this out", FILLED_IN)
+    text = path.read_text().replace("# TODO: fill this out", FILLED_IN)
     return re.sub(r"^    #(?=point|rospy|viz_pub)", "    ", text, flags=re.MULTILINE)
 
 
