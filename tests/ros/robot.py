@@ -24,15 +24,13 @@ class Ros:
     def __init__(self, folder, uri="http://127.0.0.1:1"):
         self.folder, self.uri = folder, uri
         self.environment = {
-            "PATH": os.defpath, "HOME": str(folder), "LANG": "C.UTF-8", "PYTHONPATH": str(LAB),
-            "PYTHONDONTWRITEBYTECODE": "1", "ROS_MASTER_URI": uri, "ROS_IP": "127.0.0.1", "ROS_HOME": str(folder), "ROS_LOG_DIR": str(folder / "log"),
+            "PATH": os.defpath, "HOME": str(folder), "LANG": "C.UTF-8", "PYTHONPATH": str(LAB), "PYTHONDONTWRITEBYTECODE": "1",
+            "ROS_MASTER_URI": uri, "ROS_IP": "127.0.0.1", "ROS_HOME": str(folder), "ROS_LOG_DIR": str(folder / "log"),
         }  # fmt: skip
 
     def start(self, *command, **options):
         """A process of its own, with text to and from it."""
-        return subprocess.Popen(
-            command, cwd=self.folder, env=self.environment, text=True, encoding="utf-8", **options
-        )  # fmt: skip
+        return subprocess.Popen(command, cwd=self.folder, env=self.environment, text=True, encoding="utf-8", **options)
 
     def run(self, program, *arguments, **options):
         """What came of a program, when it has ended."""
@@ -46,6 +44,30 @@ class Ros:
         found = self.run(PROGRAMS / program, *map(str, arguments), input=json.dumps(questions))
         assert found.returncode == 0, found.stderr
         return json.loads(found.stdout)
+
+    def messages(self, folder):
+        """A folder with ROS's message packages alone, which any Python can import."""
+        names = ("genpy", "genmsg", "std_msgs", "geometry_msgs", "visualization_msgs")
+        told = self.run(
+            "-c", f"import {', '.join(names)}; print(*(m.__path__[0] for m in ({', '.join(names)})), sep='\\n')"
+        )
+        for path in map(Path, told.stdout.split()):
+            (folder / path.name).symlink_to(path)
+        return folder
+
+    @contextmanager
+    def conversation(self, program, *arguments):
+        """ask(question), answered by one of our PROGRAMS that runs as long as this lasts: a line of JSON for each."""
+        command = [PYTHON, "-W", "ignore", PROGRAMS / program, *map(str, arguments)]
+        process = self.start(*command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+
+        def ask(question):
+            process.stdin.write(json.dumps(question) + "\n")
+            process.stdin.flush()
+            return json.loads(process.stdout.readline())
+
+        with process:
+            yield ask
 
     def publish(self, script):
         """Run a script that publishes markers: what a subscriber heard, each message as a dictionary, and what it printed."""

@@ -3,12 +3,12 @@
 import re
 import runpy
 
+import numpy as np
 import pytest
-from test_lab_script import ON_A_ROBOT, solved
-from transform_lab import rospy
-
 from ros.alike import differences
 from ros.programs.plain import plain
+from test_lab_script import ON_A_ROBOT, solved
+from transform_lab import rospy
 
 
 @pytest.fixture
@@ -36,7 +36,11 @@ def run_both(robot, published, capsys, folder, there, here):
     capsys.readouterr()
     runpy.run_path(str(folder / "here.py"), run_name="__main__")
     printed = capsys.readouterr()
-    return (heard, timeless(ran.stdout), timeless(ran.stderr)), (published, timeless(printed.out), timeless(printed.err))
+    return (heard, timeless(ran.stdout), timeless(ran.stderr)), (
+        published,
+        timeless(printed.out),
+        timeless(printed.err),
+    )
 
 
 def timeless(text):
@@ -73,7 +77,11 @@ rospy.logerr(marker.lifetime)
 marker.action = Marker.DELETE
 publisher.publish(marker)
 """
-THERE = "import rospy\nfrom geometry_msgs.msg import Vector3\nfrom std_msgs.msg import ColorRGBA\nfrom visualization_msgs.msg import Marker\n"
+THERE = """import rospy
+from geometry_msgs.msg import Vector3
+from std_msgs.msg import ColorRGBA
+from visualization_msgs.msg import Marker
+"""
 HERE_ = "from transform_lab import ColorRGBA, Marker, Vector3, rospy\n"
 
 
@@ -104,9 +112,37 @@ for line in {lines}:
 """
 
 
-def test_without_a_node(robot, published, capsys, tmp_path):
+def test_without_a_node(ros, published, capsys, tmp_path):
     body = TRY.format(lines=WITHOUT_NODE)
     (tmp_path / "there.py").write_text(THERE + body)
     exec(HERE_ + body)
     here = capsys.readouterr().out
-    assert robot.run(tmp_path / "there.py").stdout.splitlines() == here.splitlines()
+    assert ros.run(tmp_path / "there.py").stdout.splitlines() == here.splitlines()
+
+
+RATE = """
+import time
+clock = [1000.0]
+time.time = lambda: clock[0]
+time.sleep = lambda seconds: clock.__setitem__(0, clock[0] + seconds)
+rate = rospy.Rate(8)
+for takes in {takes}:
+    clock[0] += takes
+    print(rate.remaining().to_sec())
+    rate.sleep()
+    print(clock[0])
+"""
+
+
+def test_a_rate(ros, published, monkeypatch, capsys, tmp_path):
+    """The clock goes on while something sleeps, and by what each round takes; at times it is put back."""
+    rng = np.random.default_rng(24)
+    body = RATE.format(takes=rng.choice([0.0, 0.0625, 0.125, 0.25, 0.5, -0.25], size=200).tolist())
+    (tmp_path / "there.py").write_text(f"import rospy\nrospy.rostime.set_rostime_initialized(True)\n{body}")
+    for name in ("time", "sleep"):
+        monkeypatch.setattr(rospy.time, name, getattr(rospy.time, name))  # to be put back
+    rospy.init_node("rounds")
+    exec(body, {"rospy": rospy})
+    here = capsys.readouterr().out
+    assert ros.run(tmp_path / "there.py").stdout.splitlines() == here.splitlines()
+    assert len(set(here.splitlines())) > 100

@@ -4,14 +4,12 @@ import json
 import re
 
 import nbformat
-import numpy as np
 import pytest
 import transform_lab
-from support import ASKED, NAMES, ROOT, key_of
-from transform_lab.judging.verdict import Reply, examine
-
 from ros.alike import differences
 from ros.robot import PROGRAMS
+from support import ASKED, NAMES, ROOT, key_of
+from transform_lab.judging.verdict import Reply, examine
 
 SOURCE = ROOT / "source/transforms"
 ON_A_ROBOT = {
@@ -30,7 +28,9 @@ def for_a_robot(source):
     """A cell with the import lines that it has on a robot; what only draws or judges comes from programs/tf_and_rviz.py."""
 
     def lines(found):
-        return "\n".join(ON_A_ROBOT.get(name, "from tf_and_rviz import {}").format(name) for name in found[1].split(", "))
+        return "\n".join(
+            ON_A_ROBOT.get(name, "from tf_and_rviz import {}").format(name) for name in found[1].split(", ")
+        )
 
     return IMPORT.sub(lines, source)
 

@@ -166,15 +166,19 @@ class Rate:
 
     def remaining(self):
         """Return the Duration that is left of this round."""
-        return self._last + self.sleep_dur - Time.now()
+        return self._left(Time.now())
 
     def sleep(self):
         """Wait for the end of this round; where it is late by more than another, the next begins now."""
         now = Time.now()
-        sleep(self.remaining())
+        sleep(self._left(now))
         self._last += self.sleep_dur
         if now - self._last > self.sleep_dur * 2:
             self._last = now
+
+    def _left(self, now):
+        self._last = min(self._last, now)  # the clock may have been put back
+        return self._last + self.sleep_dur - now
 
 
 def sleep(duration):

@@ -9,13 +9,12 @@ import sys
 from types import ModuleType
 
 import numpy as np
+from ours import bare
 
 
 def codec_of(folder, messages):
     """The codec, with these messages in the place of ours."""
-    for name in ("transform_lab", "transform_lab.judging"):  # without what these import
-        sys.modules[name] = package = ModuleType(name)
-        package.__path__ = [folder + name.removeprefix("transform_lab").replace(".", "/")]
+    bare(folder)
     sys.modules["transform_lab.messages"] = messages
     from transform_lab.judging import codec
 
@@ -30,7 +29,10 @@ def answers(codec, name, cells, cases):
         args, kwargs = [codec.decode(arg) for arg in args], {key: codec.decode(arg) for key, arg in kwargs.items()}
         answer = names[name](*args, **kwargs)
         assert isinstance(answer, (np.ndarray, bool)) or type(answer).__module__.startswith("geometry_msgs.msg"), answer
-        yield codec.encode(answer), [list(map(codec.encode, args)), {key: codec.encode(arg) for key, arg in kwargs.items()}]
+        yield (
+            codec.encode(answer),
+            [list(map(codec.encode, args)), {key: codec.encode(arg) for key, arg in kwargs.items()}],
+        )
 
 
 if __name__ == "__main__":
