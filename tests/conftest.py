@@ -189,6 +189,25 @@ def open_python():
 
 
 @pytest.fixture(scope="session")
+def ros(slow, tmp_path_factory):
+    """Runs programs in the ROS 1 of this machine; without a master, for what needs no other program."""
+    from ros import robot
+
+    if problem := robot.problem():
+        lacking(problem)
+    return robot.Ros(tmp_path_factory.mktemp("ros"))
+
+
+@pytest.fixture(scope="module")
+def robot(ros, tmp_path_factory):
+    """As `ros`, with a master: what is published there, others hear."""
+    from ros.robot import master
+
+    with master(tmp_path_factory.mktemp("robot")) as computer:
+        yield computer
+
+
+@pytest.fixture(scope="session")
 def chromium():
     """The path of a Chromium browser."""
     return chromium_here() or lacking("needs Chromium, to open pages as a student's browser does")

@@ -1,5 +1,6 @@
 """The lab's transformation_demo.py: it runs here when only its import lines change, as a program and in a notebook."""
 
+import os
 import re
 import subprocess
 import sys
@@ -7,7 +8,7 @@ import sys
 import nbformat
 import pytest
 from support import PATIENCE, ROOT
-from transform_lab import Marker, Viewer, rospy
+from transform_lab import Marker, Pose, Viewer, rospy
 
 ON_A_ROBOT = ROOT / "tests/ros/lab/transformation_demo.py"  # as the lab has it
 HERE = ROOT / "source/transforms/transformation_demo.py"
@@ -19,15 +20,17 @@ def without_imports(path):
     return [line for line in path.read_text().splitlines() if not re.match(r"(from|import) ", line)]
 
 
-def solved():
+def solved(path=HERE):
     """The script as a student leaves it: the TODO done and the last part uncommented."""
-    text = HERE.read_text().replace("# TODO: fill this out", FILLED_IN)
+    text = path.read_text().replace("# TODO: fill this out", FILLED_IN)
     return re.sub(r"^    #(?=point|rospy|viz_pub)", "    ", text, flags=re.MULTILINE)
 
 
-def run_script(text, folder):
+def run_script(text, folder, *packages):
+    """What came of a script that is run here, with other packages than ours in further folders."""
     (folder / "transformation_demo.py").write_text(text)
-    environment = {"PYTHONPATH": str(ROOT / "source/transforms"), "PATH": "", "MPLCONFIGDIR": str(folder)}
+    paths = os.pathsep.join(map(str, [ROOT / "source/transforms", *packages]))
+    environment = {"PYTHONPATH": paths, "PATH": "", "MPLCONFIGDIR": str(folder)}
     return subprocess.run(
         [sys.executable, "-W", "ignore", "transformation_demo.py"],
         cwd=folder, env=environment, capture_output=True, text=True, timeout=PATIENCE,
@@ -95,8 +98,45 @@ def test_what_a_node_cannot_do_here_is_said():
         rospy.init_node("a/b")
     with pytest.raises(TypeError, match="only Marker messages can be seen here; got Viewer"):
         rospy.Publisher("topic", Viewer, queue_size=1)
-    with pytest.raises(AttributeError, match="rospy.Rate is not here. There is what the lab's script uses: Publisher"):
-        rospy.Rate(10)
+    for no_marker in (Pose, Marker(), "Marker", None):
+        with pytest.raises(TypeError, match="only Marker messages can be seen here; got "):
+            rospy.Publisher("topic", no_marker, queue_size=1)
+    with pytest.raises(
+        AttributeError, match="rospy.get_param is not here. There is what publishing needs: Duration, Pub"
+    ):
+        rospy.get_param("~rate")
+    rospy.init_node("empty")
     with pytest.raises(ValueError, match="header.frame_id is empty: set it"):
         rospy.Publisher("topic", Marker).publish(Marker(type=Marker.CUBE))
-    assert rospy.Publisher("topic", Marker, queue_size=1)
+
+
+def test_a_loop_that_would_not_end_here_says_so():
+    with pytest.raises(AttributeError, match=r"is_shutdown is not here. A loop .* never end.*: for i in range\(20\)"):
+        while not rospy.is_shutdown():
+            pass
+    with pytest.raises(
+        AttributeError, match="spin is not here. Nothing arrives here that could be waited for; leave it out"
+    ):
+        rospy.spin()
+
+
+def test_sleep_takes_what_has_seconds(monkeypatch):
+    slept = []
+    monkeypatch.setattr(rospy.time, "sleep", slept.append)
+    for duration in (0.5, 2, rospy.Duration(1.5), -1, rospy.Duration(-1), rospy.Duration.from_sec(0.25)):
+        rospy.sleep(duration)
+    assert slept == [0.5, 2, 1.5, 0, 0, 0.25]
+
+
+def test_a_rate_gives_each_round_its_time(monkeypatch):
+    """The clock goes on while something sleeps, and by what the rounds take."""
+    clock = [1000.0]
+    monkeypatch.setattr(rospy.time, "time", lambda: clock[0])
+    monkeypatch.setattr(rospy.time, "sleep", lambda seconds: clock.__setitem__(0, clock[0] + seconds))
+    rospy.init_node("rounds")
+    rate, ends = rospy.Rate(4), []
+    for takes in (0.125, 0, 0.375, 0, 1.0, 0.125):  # late by a half round, which is made up for; then by three
+        clock[0] += takes
+        rate.sleep()
+        ends.append(round(clock[0] - 1000, 6))
+    assert ends == [0.25, 0.5, 0.875, 1.0, 2.0, 2.25]

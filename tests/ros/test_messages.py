@@ -7,6 +7,7 @@ import pickle
 import pytest
 from transform_lab.lab_markers import arrow_marker, axis_marker
 from transform_lab.messages import ColorRGBA, Header, Marker, Point, Pose, PoseStamped, Quaternion, Vector3
+from transform_lab.rostime import Duration, Time
 
 FIELDS = {
     Point: "x y z",
@@ -37,6 +38,7 @@ def test_defaults():
     assert Header() == Header(0, 0, "")
     marker = Marker()
     assert (marker.type, marker.action, marker.ns, marker.points, marker.frame_locked) == (0, 0, "", [], False)
+    assert isinstance(marker.header.stamp, Time) and isinstance(marker.lifetime, Duration)
     assert isinstance(marker.scale, Vector3) and isinstance(marker.color, ColorRGBA)
     assert isinstance(Point().x, float)
 
@@ -45,6 +47,7 @@ def test_defaults_are_fresh_for_each_message():
     first, second = PoseStamped(), PoseStamped()
     first.pose.position.x = 1
     first.header.frame_id = "a"
+    first.header.stamp.secs = 1
     assert second == PoseStamped()
     marker = Marker()
     marker.points.append(Point())
@@ -90,6 +93,8 @@ def test_equality_is_by_kind_and_fields():
 
 
 def test_copies():
+    stamped = PoseStamped(header=Header(0, Time(1, 2), "a"))
+    assert copy.deepcopy(stamped) == pickle.loads(pickle.dumps(stamped)) == stamped
     pose = Pose(Point(1, 2, 3), Quaternion(0, 0, 0, 1))
     for clone in (copy.deepcopy(pose), pickle.loads(pickle.dumps(pose))):
         assert clone == pose
@@ -98,19 +103,23 @@ def test_copies():
 
 
 def test_repr_is_a_constructor_call():
-    stamped = PoseStamped(Header(1, 2.0, "base"), Pose(Point(1, 2, 3), Quaternion(0, 0, 0, 1)))
-    assert eval(repr(stamped)) == stamped
+    for stamp in (2.0, Time(2, 5)):
+        stamped = PoseStamped(Header(1, stamp, "base"), Pose(Point(1, 2, 3), Quaternion(0, 0, 0, 1)))
+        assert eval(repr(stamped)) == stamped
+    assert eval(repr(Marker(lifetime=Duration(-1.5)))) == Marker(lifetime=Duration(-1.5))
     assert repr(Point(1, 2.5, 3)) == "Point(x=1, y=2.5, z=3)"
 
 
 def test_str_is_the_text_of_ros():
+    """Of any message, see test_messages_on_a_robot.py."""
     assert str(Pose(Point(1, 2, 3), Quaternion(0, 0, 0, 1))) == (
         "position: \n  x: 1\n  y: 2\n  z: 3\norientation: \n  x: 0\n  y: 0\n  z: 0\n  w: 1"
     )
-    assert str(Header()) == "seq: 0\nstamp: 0.0\nframe_id: ''"
+    assert str(Header()) == "seq: 0\nstamp: \n  secs: 0\n  nsecs:         0\nframe_id: ''"
     assert str(Header(0, 0, "base")).endswith('frame_id: "base"')
     text = str(Marker(points=[Point(1, 2, 3)]))
     assert "points: \n  - \n    x: 1\n    y: 2\n    z: 3\ncolors: []" in text
+    assert str(Header(0, 2.5, 'a "b"\\\né')) == """seq: 0\nstamp: 2.5\nframe_id: "a \\"b\\"\\\\\\n\\xE9\""""
 
 
 def test_marker_constants():

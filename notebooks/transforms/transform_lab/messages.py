@@ -17,6 +17,8 @@ import dataclasses
 from dataclasses import MISSING, dataclass, field
 from functools import cache
 
+from .rostime import Duration, Time
+
 __all__ = ["Point", "Vector3", "Quaternion", "Pose", "Header", "PoseStamped", "ColorRGBA", "Marker"]
 
 fields = cache(dataclasses.fields)  # asked for with every new message
@@ -54,26 +56,47 @@ class Message:
 
     def __str__(self):
         """The text that ``rostopic echo`` and ``print`` show in ROS 1."""
-        return "\n".join(_lines(self, ""))
+        return _text(self, "")
 
 
-def _lines(message, indent):
-    """Yield the lines of a message's text form, each starting with `indent`."""
-    for f in fields(type(message)):
-        value = getattr(message, f.name)
-        label = f"{indent}{f.name}: "
-        if isinstance(value, Message):
-            yield label
-            yield from _lines(value, indent + "  ")
-        elif isinstance(value, (list, tuple)) and any(isinstance(item, Message) for item in value):
-            yield label
-            for item in value:
-                yield f"{indent}  - "
-                yield from _lines(item, indent + "    ") if isinstance(item, Message) else [f"{indent}    {item}"]
-        elif isinstance(value, str):
-            yield label + (f'"{value}"' if value else "''")
-        else:
-            yield label + str(value)
+def _text(value, indent):
+    """Return a value as ROS prints it; what takes lines of its own starts a new line, and each begins with `indent`."""
+    if isinstance(value, str):
+        return _quoted(value) if value else "''"
+    if type(value) in (list, tuple):
+        if not value or type(value[0]) in (bool, int, float):
+            return str(list(value))
+        return "".join(f"\n{indent}- {_text(item, indent + '  ')}" for item in value)
+    if hasattr(value, "nsecs"):  # a Time or a Duration
+        return f"\n{indent}secs: {value.secs}\n{indent}nsecs: {value.nsecs:9d}"
+    if isinstance(value, Message) or hasattr(value, "_slot_types"):  # which ROS 1's messages have
+        lines = (f"{indent}{name}: {_text(getattr(value, name), indent + '  ')}" for name in value.__slots__)
+        return ("\n" if indent else "") + "\n".join(lines)
+    return str(value)
+
+
+ESCAPES = dict(zip('\0\a\b\t\n\v\f\r\x1b"\\\x85\xa0\u2028\u2029', '0abtnvfre"\\N_LP'))
+WIDTH = 80  # letters after which YAML goes on in the next line
+
+
+def _quoted(text):
+    """Return a text in double quotes, escaped and folded as YAML is written in ROS (by PyYAML)."""
+    written, column, escaped = '"', 1, False
+    for i, letter in enumerate(text):
+        plain = " " <= letter <= "~" and letter not in ESCAPES
+        at_word = plain and 0 < i < len(text) - 1 and (letter == " " or escaped)
+        if at_word and column > WIDTH or escaped and i > 1 and column > WIDTH + 1:
+            written, column = written + "\\\n  ", 2
+            if letter == " ":
+                written, column = written + "\\", 3
+        piece = letter if plain else "\\" + (ESCAPES.get(letter) or _code(ord(letter)))
+        written, column, escaped = written + piece, column + len(piece), not plain
+    return written + '"'
+
+
+def _code(number):
+    """Return a letter's number as YAML writes it: in two, four or eight digits."""
+    return f"x{number:02X}" if number < 1 << 8 else f"u{number:04X}" if number < 1 << 16 else f"U{number:08X}"
 
 
 @dataclass(init=False, slots=True)
@@ -114,10 +137,10 @@ class Pose(Message):
 
 @dataclass(init=False, slots=True)
 class Header(Message):
-    """std_msgs/Header: the name of the frame in which the data is given. `stamp` is in seconds (there is no clock)."""
+    """std_msgs/Header: when and in which frame the data is given. `stamp` may be a plain number of seconds here."""
 
     seq: int = 0
-    stamp: float = 0.0
+    stamp: Time = field(default_factory=Time)
     frame_id: str = ""
 
 
@@ -141,7 +164,7 @@ class ColorRGBA(Message):
 
 @dataclass(init=False, slots=True)
 class Marker(Message):
-    """visualization_msgs/Marker: a shape to draw. `lifetime` is in seconds, 0 for ever."""
+    """visualization_msgs/Marker: a shape to draw. `lifetime` may be a plain number of seconds here; 0 is for ever."""
 
     ARROW = 0
     CUBE = 1
@@ -169,7 +192,7 @@ class Marker(Message):
     pose: Pose = field(default_factory=Pose)
     scale: Vector3 = field(default_factory=Vector3)
     color: ColorRGBA = field(default_factory=ColorRGBA)
-    lifetime: float = 0.0
+    lifetime: Duration = field(default_factory=Duration)
     frame_locked: bool = False
     points: list = field(default_factory=list)
     colors: list = field(default_factory=list)
