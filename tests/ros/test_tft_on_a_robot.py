@@ -142,7 +142,7 @@ def test_the_same_numbers(ros):
     )
 
 
-NO_NUMBER = [None, "0.5", [0.5, 1.0], {}]
+NO_NUMBER = [None, "0.5", [0.5, 1.0], [[0.5], [1.0]]]
 
 
 @pytest.mark.parametrize(
@@ -168,6 +168,7 @@ def test_what_is_no_angle_is_refused_as_in_ros(ros, name, arguments, angles):
         getattr(tft, name)(1j, *arguments[1:])
 
 
+@pytest.mark.filterwarnings("ignore:invalid escape sequence")
 def test_examples_of_ros(ros):
     """The doctests in ROS's file, with our functions; Python 2's print and NumPy 1's numbers are as they were."""
     with open(ros.run("-c", FIND).stdout.strip(), encoding="utf-8") as file:
@@ -188,6 +189,7 @@ def test_examples_of_ros(ros):
             "math": math,
             "random": random,
             "_AXES2TUPLE": axes,
+            "_TUPLE2AXES": {tuple(code): name for name, code in axes.items()},
         }
         examples = doctest.DocTestParser().get_doctest(text, names, getattr(node, "name", ""), None, 0)
         with np.printoptions(legacy="1.25"):

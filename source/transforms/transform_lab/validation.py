@@ -34,7 +34,8 @@ def numbers(value, what, lengths=None):
             raise TypeError
         array = np.array(value, dtype=np.float64)
     except TypeError:
-        raise TypeError(f"{what} must be made of numbers; got {type(value).__name__}") from None
+        got = repr(value) if isinstance(value, (str, list, tuple)) and len(repr(value)) < 80 else type(value).__name__
+        raise TypeError(f"{what} must be made of numbers; got {got}") from None
     except OverflowError:
         raise ValueError(f"{what} has a number that is too large") from None
     except ValueError:
