@@ -1,0 +1,78 @@
+"""The notebooks' code runs on a robot with ROS 2, too, when only its import lines change: fields by name, and floats."""
+
+import json
+import re
+
+import nbformat
+import pytest
+from support import ASKED, NAMES, ROOT, key_of
+from transform_lab.judging.verdict import Reply, examine
+
+MESSAGES = {"Point", "Pose", "PoseStamped", "Quaternion"}
+IMPORT = re.compile(r"from transform_lab import (.+)")
+# What the page says of ROS 2, as code and what it gives
+SAYS = {
+    "Quaternion()": "geometry_msgs.msg.Quaternion(x=0.0, y=0.0, z=0.0, w=1.0)",
+    "Point(1.0, 2.0, 3.0)": "TypeError",
+    "Point(x=1.0).x": "1.0",
+    "Point(x=1)": "AssertionError",
+    "Point(x=1, check_fields=False).x": "1",
+    "sorted(Header.get_fields_and_field_types())": "['frame_id', 'stamp']",
+    "sorted(Header().stamp.get_fields_and_field_types())": "['nanosec', 'sec']",
+}
+
+
+def for_ros2(source):
+    """A cell with the import lines that it has on a robot with ROS 2; tft and what draws or judges is ours."""
+
+    def lines(found):
+        names = found[1].split(", ")
+        theirs = [name for name in names if name in MESSAGES]
+        ours = [name for name in names if name not in MESSAGES]
+        imports = [f"from geometry_msgs.msg import {', '.join(theirs)}"] * bool(theirs)
+        return "\n".join([*imports, *[f"from transform_lab import {', '.join(ours)}"] * bool(ours)])
+
+    return IMPORT.sub(lines, source)
+
+
+def cells(notebook):
+    path = ROOT / f"source/transforms/{notebook}.ipynb"
+    return [cell for cell in nbformat.read(path, 4).cells if cell.cell_type == "code"]
+
+
+@pytest.fixture(scope="module")
+def found(libraries):
+    solutions = {}
+    for notebook in ASKED:
+        first, *others = cells(notebook)
+        for cell in others:
+            name, _, kind = cell.metadata.get("nbgrader", {}).get("grade_id", "").partition("-")
+            if kind == "solution":
+                cases = [[case["args"], case["kwargs"]] for case in key_of(name)["cases"]]
+                solutions[name] = {"cells": [for_ros2(first.source), for_ros2(cell.source)], "cases": cases}
+    notebooks = {name: [for_ros2(cell.source) for cell in cells(name)] for name in ASKED}
+    asked = {"code": list(SAYS), "notebooks": notebooks, "solutions": solutions}
+    return libraries.ask("on_ros2.py", asked, ROS_PYTHON_CHECK_FIELDS="1")
+
+
+def test_ros2_is_as_the_page_says(found):
+    assert dict(zip(SAYS, found["code"], strict=True)) == SAYS
+
+
+@pytest.mark.parametrize("notebook", ASKED)
+def test_cells(found, notebook):
+    assert found["notebooks"][notebook] is None, found["notebooks"][notebook]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_solutions(found, name):
+    """Our judge reads what came of ROS 2's messages, and gives full points."""
+    key = key_of(name)
+    replies = {
+        json.dumps([case["args"], case["kwargs"]]): Reply(
+            "returned", answer, [case["args"], case["kwargs"]] if kept else None
+        )
+        for case, (answer, kept) in zip(key["cases"], found["solutions"][name], strict=True)
+    }
+    verdict = examine(name, key, lambda args, kwargs: replies[json.dumps([args, kwargs])])
+    assert (verdict.status, verdict.credit, verdict.says) == ("graded", 1, "")
