@@ -14,7 +14,7 @@ from support import PATIENCE, wait_for
 PROGRAMS = Path(__file__).with_name("programs")  # what the robot's Python runs for tests
 LAB = Path(__file__).with_name("lab")  # a robot has the lab's script
 PYTHON = shutil.which("python3", path=os.defpath)  # the system's, which has Debian's packages
-NEEDS = "import genpy, rospy, tf.transformations, tf2_ros, visualization_msgs.msg"
+NEEDS = "import genpy, rosmaster, rospy, tf.transformations, tf2_ros, visualization_msgs.msg"
 TOPIC = "visualization_marker"
 
 
@@ -84,9 +84,17 @@ class Ros:
 
 def problem():
     """Why nothing can be run as on a robot here, or None."""
-    if PYTHON is None or subprocess.run([PYTHON, "-c", NEEDS], capture_output=True).returncode != 0:
+    if PYTHON is None or subprocess.run([PYTHON, "-c", NEEDS], env={}, capture_output=True).returncode != 0:
         return "needs Debian's ROS 1 (python3-rospy, python3-tf and others, see .ci/run)"
     return None
+
+
+def answers(uri):
+    """Whether there is a master."""
+    try:
+        return xmlrpc.client.ServerProxy(uri).getPid("/test")[0] == 1
+    except ConnectionError:
+        return False
 
 
 @contextmanager
@@ -101,15 +109,12 @@ def master(folder):
     with open(folder / "master.log", "w") as log:
         process = ros.start(*command, stdout=log, stderr=log, stdin=subprocess.DEVNULL)
 
-    def answers():
+    def started():
         assert process.poll() is None, (folder / "master.log").read_text()
-        try:
-            return xmlrpc.client.ServerProxy(ros.uri).getPid("/test")[0] == 1
-        except ConnectionError:
-            return False
+        return answers(ros.uri)
 
     try:
-        wait_for(answers)
+        wait_for(started)
         yield ros
     finally:
         process.kill()

@@ -1,12 +1,18 @@
 """The lab's script on a robot and here: subscribers hear the same messages, and people read the same text."""
 
+import os
 import re
 import runpy
+import signal
+import subprocess
+import sys
 
 import numpy as np
 import pytest
 from ros.alike import differences
 from ros.programs.plain import plain
+from ros.robot import answers
+from support import PATIENCE, ROOT, wait_for
 from test_lab_script import ON_A_ROBOT, solved
 from transform_lab import rospy
 
@@ -146,3 +152,22 @@ def test_a_rate(ros, published, monkeypatch, capsys, tmp_path):
     here = capsys.readouterr().out
     assert ros.run(tmp_path / "there.py").stdout.splitlines() == here.splitlines()
     assert len(set(here.splitlines())) > 100
+
+
+KILLED = """
+import os, pathlib, signal, sys
+from ros.robot import master
+with master(pathlib.Path(sys.argv[1])) as computer:
+    print(computer.uri, flush=True)
+    os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def test_a_master_ends_even_where_its_tests_are_killed(ros, tmp_path):
+    paths = os.pathsep.join(str(ROOT / folder) for folder in ("", "tests", "source/transforms"))
+    command = [sys.executable, "-c", KILLED, tmp_path]
+    killed = subprocess.run(
+        command, env={**os.environ, "PYTHONPATH": paths}, capture_output=True, text=True, timeout=PATIENCE
+    )
+    assert killed.returncode == -signal.SIGKILL, killed.stderr
+    wait_for(lambda: not answers(killed.stdout.strip()))

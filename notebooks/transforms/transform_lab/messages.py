@@ -8,9 +8,10 @@ only its import lines change::
     Pose(position=Point(1, 2, 3))                       # some fields by name
 
 As on a robot, a fresh ``Quaternion()`` is 0, 0, 0, 0 (which is no orientation: no turn is 0, 0, 0, 1), a field that
-does not exist cannot be set (AttributeError), and what is assigned to a field is not checked.
+does not exist cannot be set (AttributeError), and what is assigned to a field is not checked. A `stamp` is a Time, a
+`lifetime` a Duration (rostime.py); a plain number of seconds is taken in their place, which on a robot cannot be sent.
 
-Source: the message definitions of ROS Noetic, and the constructor of ``genpy.Message``.
+Source: the message definitions of ROS Noetic, and ``genpy/message.py``.
 """
 
 import dataclasses
@@ -60,7 +61,10 @@ class Message:
 
 
 def _text(value, indent):
-    """Return a value as ROS prints it; what takes lines of its own starts a new line, and each begins with `indent`."""
+    """Return a value as ROS prints it; what takes lines of its own starts a new line, and each begins with `indent`.
+
+    Lists of texts, which none of these messages has, ROS prints with fewer quotes.
+    """
     if isinstance(value, str):
         return _quoted(value) if value else "''"
     if type(value) in (list, tuple):
@@ -137,7 +141,7 @@ class Pose(Message):
 
 @dataclass(init=False, slots=True)
 class Header(Message):
-    """std_msgs/Header: when and in which frame the data is given. `stamp` may be a plain number of seconds here."""
+    """std_msgs/Header: when, and in which frame, the data is given."""
 
     seq: int = 0
     stamp: Time = field(default_factory=Time)
@@ -164,7 +168,7 @@ class ColorRGBA(Message):
 
 @dataclass(init=False, slots=True)
 class Marker(Message):
-    """visualization_msgs/Marker: a shape to draw. `lifetime` may be a plain number of seconds here; 0 is for ever."""
+    """visualization_msgs/Marker: a shape to draw. A `lifetime` of 0 is for ever."""
 
     ARROW = 0
     CUBE = 1

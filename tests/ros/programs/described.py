@@ -43,4 +43,4 @@ def computed(expression, kinds):
         value = eval(expression, {**kinds, "copy": copy})
     except Exception as error:
         return type(error).__name__
-    return json.dumps(value, default=lambda time: [type(time).__name__, time.secs, time.nsecs])
+    return json.dumps(value, default=lambda moment: [type(moment).__name__, moment.secs, moment.nsecs])
