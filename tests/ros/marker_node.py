@@ -6,8 +6,8 @@ import re
 import sys
 
 import geometry_msgs.msg
-import rospy
 import rosgraph_msgs.msg
+import rospy
 import std_msgs.msg
 import tf2_msgs.msg
 import visualization_msgs.msg as vis

@@ -40,7 +40,10 @@ Window Geometry: {{X: 0, Y: 0, Width: {width}, Height: {height}}}
 def problem():
     """What this machine lacks, or None."""
     missing = [name for name in PROGRAMS if not shutil.which(name)]
-    if not missing and subprocess.run([PYTHON, "-c", "import rospy, visualization_msgs"], capture_output=True).returncode:
+    if (
+        not missing
+        and subprocess.run([PYTHON, "-c", "import rospy, visualization_msgs"], capture_output=True).returncode
+    ):
         missing = [f"rospy in {PYTHON}"]
     return f"needs RViz to compare with: {', '.join(missing)} missing" if missing else None
 
@@ -48,8 +51,8 @@ def problem():
 class RViz:
     """RViz, its fixed frame frame_a, seen by a camera of ours."""
 
-    def __init__(self, screen, node, corner):
-        self._screen, self._node, self._corner, self._drawn = screen, node, corner, 0
+    def __init__(self, screen, program, node, corner):
+        self._screen, self._program, self._node, self._corner, self._drawn = screen, program, node, corner, 0
 
     def _ask(self, task, values):
         self._node.stdin.write(json.dumps([task, values]) + "\n")
@@ -63,7 +66,7 @@ class RViz:
 
     def draw(self, markers):
         """The picture (height x width x 3, from 0 to 255) of these markers, published one after the other."""
-        return self.more([Marker(action=Marker.DELETEALL), *markers])
+        return self.more([Marker(header=Header(0, 0, "frame_a"), action=Marker.DELETEALL), *markers])
 
     def more(self, markers=()):
         """The picture after these markers have been published, too."""
@@ -91,6 +94,7 @@ class RViz:
 
     def picture(self):
         """What is on the screen: an X window dump."""
+        assert self._program.poll() is None, "RViz has ended"
         data = self._screen.read_bytes()
         head = struct.unpack(">25I", data[:100])
         size, width, height, line, colors = (head[i] for i in (0, 4, 5, 12, 19))
@@ -133,12 +137,12 @@ def running(camera, width, height):
             environment["DISPLAY"] = f":{told.readline().strip()}"
         (folder / "scene.rviz").write_text(configuration(camera, width, height))
         wait_for(lambda: answers(port))
-        start("rviz", "-d", "scene.rviz", "--fullscreen")
+        program = start("rviz", "-d", "scene.rviz", "--fullscreen")
         pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
         node = start(PYTHON, Path(__file__).with_name("marker_node.py"), **pipes)
         if node.stdout.readline() != "ready\n":
             raise RuntimeError("\n".join(log.read_text() for log in folder.glob("*.log")))
-        yield RViz(folder / "Xvfb_screen0", node, corner(camera))
+        yield RViz(folder / "Xvfb_screen0", program, node, corner(camera))
 
 
 def answers(port):

@@ -91,10 +91,11 @@ def _write(axes, nodes, camera):
 
         x, y = min(candidates, key=badness_at)
         taken.append((x, y, half_width, half_height, 20 if label.beside else 5))
-        style = {"fontweight": "bold", "ha": "center", "va": "center", "parse_math": False}
+        weight = "bold" if label.height is None else "normal"
+        style = {"fontweight": weight, "ha": "center", "va": "center", "ma": "left", "parse_math": False}
         outline = [withStroke(linewidth=3, foreground="white")]
         size = _font_size(label, transform, camera)
-        axes.text(x, y, label.text, color=label.color[:3], fontsize=size, path_effects=outline, **style)
+        axes.text(x, y, label.text, color=label.color, fontsize=size, path_effects=outline, **style)
 
 
 def _in_view(label, node, camera):
