@@ -101,6 +101,11 @@ class RViz:
         rows = np.frombuffer(data, np.uint8, height * line, size + 12 * colors).reshape(height, line)
         return rows[:, : 4 * width].reshape(height, width, 4)[..., 2::-1]
 
+    def library(self, name):
+        """The bytes of a library that RViz has loaded."""
+        lines = Path(f"/proc/{self._program.pid}/maps").read_text().splitlines()
+        return next(Path(line.split()[-1]).read_bytes() for line in lines if name in line)
+
     def remarks(self, markers):
         """What RViz says of each marker: its level (2 info, 4 warning, 8 error: not drawn) and its words, or None."""
         return self._ask("remarks", [dataclasses.asdict(marker) for marker in markers])

@@ -168,4 +168,4 @@ def _corners(nodes):
 def _readable(color):
     """Return a colour dark enough to be read on white."""
     brightness = 0.3 * color[0] + 0.59 * color[1] + 0.11 * color[2]
-    return tuple(value * min(1, 0.45 / max(brightness, 0.45)) for value in color[:3])
+    return (*(value * min(1, 0.45 / max(brightness, 0.45)) for value in color[:3]), 1)

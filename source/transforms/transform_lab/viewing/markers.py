@@ -23,6 +23,7 @@ TYPE_NAMES = (
     " MESH_RESOURCE TRIANGLE_LIST"
 ).split()
 UNINITIALIZED = "Uninitialized quaternion, assuming identity."
+UNNORMALIZED = "Unnormalized quaternion in marker message."
 OPAQUE = 0.9998  # from here on RViz does not blend
 CAPITAL = 0.61  # of scale.z: the height of a capital letter in RViz's font
 PIECES = 12  # that a line between two colours is drawn in
@@ -43,8 +44,12 @@ def marker_pose(marker):
     """Return the 4x4 matrix of a marker's pose: as in RViz, an orientation of zeros is no rotation, any other is made
     one of length 1.
     """
-    q = np.array([getattr(marker.pose.orientation, name) for name in "xyzw"], float)
-    turn = tft.quaternion_matrix(q / np.linalg.norm(q)) if q.any() else np.eye(4)
+    q = _xyzw(marker)
+    if q.any():
+        q = q / np.abs(q).max()  # first, for its square may be too large a number
+        turn = tft.quaternion_matrix(q / np.linalg.norm(q))
+    else:
+        turn = np.eye(4)
     return tft.translation_matrix(_xyz(marker.pose.position)) @ turn
 
 
@@ -110,17 +115,14 @@ def _need_numbers(value, names, what, kind):
 
 
 def remarks(marker):
-    """Return what RViz says of a marker that is published, in its words, as (level, text); then what is ours to say.
-
-    With an ERROR among them nothing is drawn. The source is checkMarkerMsg of RViz 1.14, which has the same order.
-    """
-    said = list(_of_rviz(marker))
-    return said if ERROR in dict(said) else [*said, *_of_ours(marker)]
+    """Return what there is to say of a marker that is published, as (level, text). With an ERROR nothing is drawn."""
+    said = list(rviz_says(marker))
+    return said if ERROR in dict(said) else [*said, *we_say(marker)]
 
 
-def _of_rviz(marker):
-    kind, scale, points = marker.type, _xyz(marker.scale), marker.points
-    q = np.array([getattr(marker.pose.orientation, name) for name in "xyzw"], float)
+def rviz_says(marker):
+    """Yield what RViz says of a marker, in its words, as (level, text): checkMarkerMsg of RViz 1.14."""
+    kind, scale, points, q = marker.type, _xyz(marker.scale), marker.points, _xyzw(marker)
     yield from _finite("Position", _xyz(marker.pose.position))
     if kind not in range(len(TYPE_NAMES)):
         yield ERROR, f"Unknown marker type: {kind}."
@@ -129,8 +131,8 @@ def _of_rviz(marker):
         yield from _finite("Orientation", q)
         if not q.any():
             yield INFO, UNINITIALIZED
-        elif not abs(q @ q - 1) < 10e-3:
-            yield WARNING, "Unnormalized quaternion in marker message."
+        elif not abs(sum(value * value for value in q.tolist()) - 1) < 10e-3:
+            yield WARNING, UNNORMALIZED
     if kind in LINES:
         if scale[0] == 0:
             yield WARNING, "Width LINE_LIST or LINE_STRIP is 0.0 (scale.x)."
@@ -194,11 +196,14 @@ def _finite(field, values):
         yield ERROR, f"{field} contains invalid floating point values (nans or infs)"
 
 
-def _of_ours(marker):
-    """What RViz leaves unsaid: what it draws otherwise than it was meant, or not at all."""
+def we_say(marker):
+    """Yield what RViz leaves unsaid, as (level, text): what it draws otherwise than it was meant, or not at all."""
     points, colors, scale = _points(marker), _colors(marker), _xyz(marker.scale)
-    lengths = np.vstack([_xyz(marker.pose.position), points, scale, points * scale])
-    farthest = np.abs(lengths[~np.isnan(lengths)]).max()
+    yield from _finite("Orientation", _xyzw(marker))
+    yield from _finite("Scale", scale)
+    with np.errstate(over="ignore", invalid="ignore"):
+        lengths = np.vstack([_xyz(marker.pose.position), points, scale, points * scale])
+    farthest = np.nanmax(np.abs(lengths))
     if farthest > FARTHEST:
         yield ERROR, f"It is too far away to be drawn: {farthest:.4g} m. Are these metres?"
     for i in np.flatnonzero(~np.isfinite(points).all(axis=1))[:1]:
@@ -233,19 +238,19 @@ def draw_marker(marker, node):
         points, colors = points[valid], colors[valid]
     colors = _drawn(colors)
     if kind == Marker.ARROW:
-        node.solids += _arrow(points, size, tuple(color))
+        node.solids += _arrow(points, size, tuple(color.tolist()))
     elif kind in SOLIDS:
-        node.solids += _solid(SOLIDS[kind], (0, 0, 0), size, tuple(color))
+        node.solids += _solid(SOLIDS[kind], (0, 0, 0), size, tuple(color.tolist()))
     elif kind in SOLID_LISTS:
         for point, each in zip(points, colors):
-            node.solids += _solid(SOLID_LISTS[kind], point, size, tuple(each))
+            node.solids += _solid(SOLID_LISTS[kind], point, size, tuple(each.tolist()))
     elif kind in LINES and size[0] > 0:
         node.solids += _lines(points, colors, size[0], kind == Marker.LINE_STRIP)
     elif kind == Marker.POINTS and (np.abs(size[:2]) > 0).all():
         for some in _of_one_opacity(np.where(np.isfinite(points).all(axis=1)[:, None], colors, 0)):
             node.clouds.append(Cloud(points[some], colors[some], abs(size[0])))
     elif kind == Marker.TEXT_VIEW_FACING and size[2] > 0:
-        node.labels.append(Label(marker.text, np.zeros(3), tuple(color), height=CAPITAL * size[2]))
+        node.labels.append(Label(marker.text, np.zeros(3), tuple(color.tolist()), height=CAPITAL * size[2]))
     elif kind == Marker.TRIANGLE_LIST:
         corners, colors = (points * size).reshape(-1, 3, 3), colors.reshape(-1, 3, 4)
         for some in _of_one_opacity(np.where(np.isfinite(corners).all(axis=(1, 2))[:, None, None], colors, 0)):
@@ -278,7 +283,7 @@ def _arrow(points, size, color):
     tail, tip = points
     length, (shaft, head) = np.linalg.norm(tip - tail), np.abs(size[:2])
     if length == 0:
-        return _solid("cylinder", tail, np.array([shaft, shaft, 0]), color)
+        return _solid("cylinder", tail, np.array([max(shaft, head)] * 2 + [0]), color)
     long = np.clip(size[2], FLAT * length, length) if size[2] else 0.23 * length
     solids = arrow(tail, tip, color, max(shaft, FLAT * head), max(head, FLAT * shaft), long)
     return [solid for solid in solids if (shaft if solid.kind == "cylinder" else head) > 0]
@@ -323,6 +328,11 @@ def _drawn(colors):
 
 def _xyz(value):
     return np.array([value.x, value.y, value.z], float)
+
+
+def _xyzw(marker):
+    q = marker.pose.orientation
+    return np.array([q.x, q.y, q.z, q.w], float)
 
 
 def _rgba(value):
