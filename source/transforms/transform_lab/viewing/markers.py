@@ -24,6 +24,11 @@ TYPE_NAMES = (
 ).split()
 UNINITIALIZED = "Uninitialized quaternion, assuming identity."
 UNNORMALIZED = "Unnormalized quaternion in marker message."
+BEYOND = "Colors go from 0 to 1 (not to 255); what is beyond is drawn as 0 or 1."
+NARROW = "A negative width (scale.x) is not drawn."
+LOW = "A negative text height (scale.z) makes RViz end."
+FAR = "It is too far away to be drawn"
+OURS = (BEYOND, NARROW, LOW, FAR)  # how what RViz does not say begins
 OPAQUE = 0.9998  # from here on RViz does not blend
 CAPITAL = 0.61  # of scale.z: the height of a capital letter in RViz's font
 PIECES = 12  # that a line between two colours is drawn in
@@ -116,11 +121,11 @@ def _need_numbers(value, names, what, kind):
 
 def remarks(marker):
     """Return what there is to say of a marker that is published, as (level, text). With an ERROR nothing is drawn."""
-    said = list(rviz_says(marker))
-    return said if ERROR in dict(said) else [*said, *we_say(marker)]
+    said = list(_of_rviz(marker))
+    return said if ERROR in dict(said) else [*said, *_of_ours(marker)]
 
 
-def rviz_says(marker):
+def _of_rviz(marker):
     """Yield what RViz says of a marker, in its words, as (level, text): checkMarkerMsg of RViz 1.14."""
     kind, scale, points, q = marker.type, _xyz(marker.scale), marker.points, _xyzw(marker)
     yield from _finite("Position", _xyz(marker.pose.position))
@@ -196,7 +201,7 @@ def _finite(field, values):
         yield ERROR, f"{field} contains invalid floating point values (nans or infs)"
 
 
-def we_say(marker):
+def _of_ours(marker):
     """Yield what RViz leaves unsaid, as (level, text): what it draws otherwise than it was meant, or not at all."""
     points, colors, scale = _points(marker), _colors(marker), _xyz(marker.scale)
     yield from _finite("Orientation", _xyzw(marker))
@@ -205,17 +210,17 @@ def we_say(marker):
         lengths = np.vstack([_xyz(marker.pose.position), points, scale, points * scale])
     farthest = np.nanmax(np.abs(lengths))
     if farthest > FARTHEST:
-        yield ERROR, f"It is too far away to be drawn: {farthest:.4g} m. Are these metres?"
+        yield ERROR, f"{FAR}: {farthest:.4g} m. Are these metres?"
     for i in np.flatnonzero(~np.isfinite(points).all(axis=1))[:1]:
         yield WARNING, f"invalid point[{i}] ({', '.join(f'{v:.2f}' for v in points[i])})"
     for i in np.flatnonzero(~np.isfinite(colors).all(axis=1))[:1]:
         yield WARNING, f"invalid color[{i}] ({', '.join(f'{v:.2f}' for v in colors[i])})"
     if (np.abs(np.vstack([colors, _rgba(marker.color)]) - 0.5) > 0.5).any():
-        yield WARNING, "Colors go from 0 to 1 (not to 255); what is beyond is drawn as 0 or 1."
+        yield WARNING, BEYOND
     if marker.type in LINES and marker.scale.x < 0:
-        yield ERROR, "A negative width (scale.x) is not drawn."
+        yield ERROR, NARROW
     if marker.type == Marker.TEXT_VIEW_FACING and marker.scale.z < 0:
-        yield ERROR, "A negative text height (scale.z) makes RViz end."
+        yield ERROR, LOW
 
 
 # What RViz draws
