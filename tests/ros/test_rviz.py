@@ -67,7 +67,7 @@ def seen(image):
     """Where something is drawn on the white, and where something red, green and blue."""
     channels = np.moveaxis(image, 2, 0)
     low, high = (of(of(channels[0], channels[1]), channels[2]) for of in (np.minimum, np.maximum))
-    return [low < 215, *((channel == high) & (high - low > 60) for channel in channels)]
+    return [low < 215, *((channel == high) & (high - low > 30) for channel in channels)]
 
 
 def distance(one, other):
@@ -129,7 +129,7 @@ def test_deleting_needs_no_frame(rviz):
 
 def test_a_marker_stays_where_its_frame_was_unless_it_is_locked_to_it(rviz):
     rviz.frame("moving", (0, 0, 0))
-    cubes = [marker(M.CUBE, (0.5, 0.5, 0.5), frame="moving", id=1, frame_locked=True)]
+    cubes = [marker(M.CUBE, (0.5, 0.5, 0.5), pose=Pose(Point(), UPRIGHT), frame="moving", id=1, frame_locked=True)]
     cubes += [marker(M.CUBE, (0.5, 0.5, 0.5), pose=UPWARD, frame="moving", id=2, color=BLUE)]
     viewer = viewer_of([])
     viewer.add_frame("moving", np.eye(4))
