@@ -105,6 +105,12 @@ DRAWN = {  # by name: the markers that are published one after the other
     "triangles, clear but for each one's colour": [
         marker(M.TRIANGLE_LIST, (1, 1, 1), TRIANGLES, color=CLEAR, colors=[RED, BLUE])
     ],
+    "triangles, one of them clear": [
+        marker(M.TRIANGLE_LIST, (1, 1, 1), TRIANGLES, colors=[RED] * 3 + [faint(BLUE, 0)] * 3)
+    ],
+    "triangles, one of them and all clear": [
+        marker(M.TRIANGLE_LIST, (1, 1, 1), TRIANGLES, color=CLEAR, colors=[RED] * 3 + [faint(BLUE, 0)] * 3)
+    ],
     "triangles of four points": [marker(M.TRIANGLE_LIST, (1, 1, 1), TRIANGLES[:4])],
     "triangles with two colors too many": [marker(M.TRIANGLE_LIST, (1, 1, 1), TRIANGLES, colors=[RED] * 4)],
     "triangles of no height": [marker(M.TRIANGLE_LIST, (1, 1, 0), TRIANGLES)],
