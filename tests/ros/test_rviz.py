@@ -142,14 +142,16 @@ def test_a_marker_stays_where_its_frame_was_unless_it_is_locked_to_it(rviz):
     wait_for(lambda: difference(rviz.more(), still(viewer)) <= NEAR)
 
 
-def test_a_marker_waits_for_its_frame(rviz):
-    waiting = marker(M.CUBE, (0.5, 0.5, 0.5), frame="late")
-    viewer = viewer_of([waiting])
-    assert not seen(rviz.draw([waiting]))[0].any() and not seen(still(viewer))[0].any()
-    rviz.frame("late", (0.5, 0, 0))
-    viewer.add_frame("late", tft.translation_matrix((0.5, 0, 0)))
-    assert seen(still(viewer))[0].any()
-    wait_for(lambda: difference(rviz.more(), still(viewer)) <= NEAR)
+def test_a_marker_waits_for_its_frame_and_then_stays(rviz):
+    waiting = [marker(M.CUBE, (0.5, 0.5, 0.5), pose=UPWARD, frame="late", color=BLUE)]
+    waiting += [marker(M.CUBE, (0.5, 0.5, 0.5), pose=Pose(Point(), UPRIGHT), frame="late", id=1, frame_locked=True)]
+    viewer = viewer_of(waiting)
+    assert not seen(rviz.draw(waiting))[0].any() and not seen(still(viewer))[0].any()
+    for x in (0.5, 0.8):
+        rviz.frame("late", (x, 0, 0))
+        viewer.add_frame("late", tft.translation_matrix((x, 0, 0)))
+        assert seen(still(viewer))[0].any()
+        wait_for(lambda: difference(rviz.more(), still(viewer)) <= NEAR)
 
 
 def test_a_lifetime_ends_in_rviz_alone(rviz):

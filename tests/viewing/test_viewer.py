@@ -406,6 +406,15 @@ def test_a_marker_stays_when_its_frame_moves_unless_it_is_locked_to_it(viewer, l
     np.testing.assert_allclose(marker_node(viewer).transform, np.eye(4) if locked else A_T_B, atol=1e-12)
 
 
+def test_a_marker_waits_for_its_frame_and_then_stays(viewer):
+    waiting = marker(Marker.CUBE)
+    waiting.header.frame_id = "late"
+    viewer.publish(waiting)
+    for transform in (A_T_B, np.eye(4)):
+        viewer.add_frame("late", transform)
+    np.testing.assert_allclose(marker_node(viewer).transform, A_T_B, atol=1e-12)
+
+
 # Boxes, grippers, ghosts, the fixed frame, where it is seen from
 
 
