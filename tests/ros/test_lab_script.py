@@ -65,7 +65,7 @@ from transform_lab import Header, Marker, Vector3, ColorRGBA, rospy
 publisher = rospy.Publisher("t", Marker, queue_size=1)
 rospy.init_node("one")
 try:
-    publisher.publish(Marker(header=Header(0, 0, "typo"), type=Marker.CUBE))
+    publisher.publish(Marker(header=Header(0, 0, "typo"), type=Marker.MESH_RESOURCE))
 except ValueError:
     print("refused")
 publisher.publish(Marker(header=Header(0, 0, "a"), type=1, scale=Vector3(1, 1, 1), color=ColorRGBA(1, 0, 0, 1)))

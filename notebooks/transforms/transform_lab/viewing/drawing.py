@@ -1,19 +1,19 @@
 """Turns a scene into what is drawn: nodes with solids and labels, the points to have in view, the grid."""
 
 import math
+import textwrap
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from .. import tft
-from .scene import marker_name, marker_pose
+from .markers import draw_marker, marker_name, marker_pose
 from .shapes import (
     CORNERS,
     GREY,
     Label,
     Node,
     arrow,
-    draw_marker,
     frame_node,
     gripper_node,
     moved,
@@ -23,6 +23,7 @@ from .shapes import (
     translucent,
 )
 
+LINE, MOST_LINES = 90, 8  # letters in a line of what is said of markers, and how many of these there are
 SMALLEST = 1e-6  # metres; what is closer together is at the same place but for rounding
 
 
@@ -76,11 +77,12 @@ def _draw(scene, at):
     """Return a Drawing with what has a size of its own: markers, boxes and grippers."""
     where = {name: scene.in_root(name) for name in scene.frames}
     nodes = []
-    for marker in scene.markers.values():
-        node = Node(path("markers", marker_name(marker)), where[marker.header.frame_id] @ marker_pose(marker))
-        if marker.color.a > 0 or marker.colors:
-            draw_marker(marker, node)
-        nodes.append(node)
+    for published in scene.markers.values():
+        marker = published.marker
+        place = where.get(marker.header.frame_id) if published.place is None else published.place
+        if place is not None:
+            nodes.append(Node(path("markers", marker_name(marker)), place @ marker_pose(marker)))
+            draw_marker(marker, nodes[-1])
     ends = [np.empty((0, 3))] + (_corners(nodes) if at is None else [])
     for name, box in scene.boxes.items():
         color = translucent(box.color) if box.ghost else box.color
@@ -96,7 +98,14 @@ def _draw(scene, at):
         if at is None or name in at:
             ends += [moved(where[thing.frame], p)[None] for p in vars(thing).values() if isinstance(p, np.ndarray)]
     ends += [T[None, :3, 3] for name, T in where.items() if at is None or name in at]
-    return Drawing(nodes, where, np.concatenate(ends), scene.text)
+    return Drawing(nodes, where, np.concatenate(ends), _words(scene))
+
+
+def _words(scene):
+    """Return what stands in the corner: the scene's text, and what RViz says of markers, in lines that fit."""
+    said = [line for text in scene.said() for line in textwrap.wrap(text, LINE)]
+    more = [f"… and {len(said) - MOST_LINES} lines more"] if len(said) > MOST_LINES else []
+    return "\n".join([*scene.text.splitlines(), *said[:MOST_LINES], *more])
 
 
 def _add_sized(scene, drawing, length, at):
@@ -159,4 +168,4 @@ def _corners(nodes):
 def _readable(color):
     """Return a colour dark enough to be read on white."""
     brightness = 0.3 * color[0] + 0.59 * color[1] + 0.11 * color[2]
-    return tuple(value * min(1, 0.45 / max(brightness, 0.45)) for value in color[:3])
+    return (*(value * min(1, 0.45 / max(brightness, 0.45)) for value in color[:3]), 1)

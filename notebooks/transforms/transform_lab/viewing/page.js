@@ -165,6 +165,7 @@ function placeLabels(labels, viewer, pane, view, object) {
   for (const label of labels) {
     const {x, y, depth} = project(label, 1), style = label.element.style;
     if (label.height) {  // of a capital letter, in metres
+      Object.assign(style, {fontFamily: '"Liberation Sans", Arial, sans-serif', fontWeight: "normal", textAlign: "left"});
       style.fontSize = `${label.height / 0.72 * height / (2 * depth * Math.tan(view.fov / 360 * Math.PI))}px`;
     }
     const w = label.element.offsetWidth / 2, h = label.element.offsetHeight / 2;

@@ -1,6 +1,26 @@
 """Shows frames, points, arrows, boxes, grippers and markers in 3D, as RViz does, inside a notebook.
 
 Nothing is started and nothing listens: the scene is drawn into the notebook itself and stays there when it is saved.
+
+Beside RViz (1.14; tests/ros/test_rviz.py draws every sort of marker with both): markers are where RViz has them, as large,
+and it says what RViz says. What differs:
+
+===================== ============================================ =================================================
+what                  RViz                                         here
+===================== ============================================ =================================================
+light                 one lamp; what is turned away is black       brighter; both sides of triangles are lit
+lines                 flat ribbons that face the viewer, mitred    rods; a colour that changes along a line has steps
+POINTS                scale.x wide and scale.y high with Mesa,      squares of scale.x, upright
+                      turned with the marker; with other drivers
+                      upright squares of scale.x
+SPHERE_LIST           of three sizes: ovals that face the viewer   ellipsoids, as a SPHERE of this scale is
+texts                 Liberation Sans                              another font, as high; a line may be wider or narrower
+lifetime              the marker goes away                         it stays
+frame_id unknown      a marker waits in a queue of 100, DELETE too any number waits; DELETE deletes
+MESH_RESOURCE         is drawn                                     ValueError
+over 2000 points      are drawn                                    ValueError (POINTS: any number)
+text height below 0   RViz ends itself (an assertion of OGRE)       is not drawn, and says so
+===================== ============================================ =================================================
 """
 
 import inspect

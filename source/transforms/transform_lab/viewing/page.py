@@ -49,7 +49,9 @@ def labels(nodes):
             "position": np.round(label.position, 6).tolist(),
             "beside": label.beside,
             "height": label.height,
-            "color": "rgb({:.0f} {:.0f} {:.0f})".format(*(255 * value for value in label.color[:3])),
+            "color": "rgb({:.0f} {:.0f} {:.0f} / {:.3g})".format(
+                *(255 * value for value in label.color[:3]), label.color[3]
+            ),
         }
         for node in nodes
         for label in node.labels

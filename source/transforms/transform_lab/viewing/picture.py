@@ -9,6 +9,8 @@ from .shapes import BESIDE, moved
 
 HEIGHT = 4.5  # inches
 DOTS_PER_INCH = 110
+CAPITAL = 0.72  # of its font's size: the height of a capital letter
+LOWER = 0.23  # of a capital letter's height
 LIGHT = np.array([0.3, 0.2, 0.95])  # in the camera's right, up and backward directions
 
 
@@ -91,10 +93,15 @@ def _write(axes, nodes, camera):
 
         x, y = min(candidates, key=badness_at)
         taken.append((x, y, half_width, half_height, 20 if label.beside else 5))
-        style = {"fontweight": "bold", "ha": "center", "va": "center", "parse_math": False}
+        weight = "bold" if label.height is None else "normal"
+        style = {"fontweight": weight, "ha": "center", "va": "center", "ma": "left", "parse_math": False}
         outline = [withStroke(linewidth=3, foreground="white")]
         size = _font_size(label, transform, camera)
-        axes.text(x, y, label.text, color=label.color[:3], fontsize=size, path_effects=outline, **style)
+        if (
+            label.height is not None
+        ):  # RViz has a text lower than its position, and the middle of our font's line is high
+            y -= LOWER * CAPITAL * size / (72 * HEIGHT)
+        axes.text(x, y, label.text, color=label.color, fontsize=size, path_effects=outline, **style)
 
 
 def _in_view(label, node, camera):
@@ -108,8 +115,8 @@ def _font_size(label, transform, camera):
     if label.height is None:
         return 10
     depth = camera.project(moved(transform, label.position))[1]
-    # a capital is 0.72 of its font's size; above 400 points the picture would be all letter
-    return min(72 * HEIGHT * label.height / (2 * camera.tangent * depth) / 0.72, 400)
+    # above 400 points the picture would be all letter
+    return min(72 * HEIGHT * label.height / (2 * camera.tangent * depth) / CAPITAL, 400)
 
 
 def _solid(node, solid, camera):

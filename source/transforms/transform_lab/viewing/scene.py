@@ -1,15 +1,15 @@
 """What there is to see: a tree of named frames, and the points, arrows, boxes, grippers and markers given in them."""
 
 import copy
-from dataclasses import dataclass
-from numbers import Integral
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from .. import libraries, tft
 from ..messages import Marker
 from ..validation import FARTHEST, NEAREST, numbers, rigid_transform, row_text, within_reach
-from .shapes import BROWN, ORANGE, PURPLE, STEEL, X_RED, Y_GREEN, Z_BLUE, Node, draw_marker, marker_type, rgba, xyz
+from .markers import ERROR, UNINITIALIZED, check_fields, marker_name, marker_pose, marker_type, remarks
+from .shapes import BROWN, ORANGE, PURPLE, STEEL, X_RED, Y_GREEN, Z_BLUE, rgba, xyz
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,6 +64,16 @@ class Gripper:
     ghost: bool = False
 
 
+@dataclass(frozen=True, eq=False)
+class Published:
+    """A marker, and `place`, the 4x4 root_T_frame of its frame when it was published; None while that is not known, and
+    for one that is locked to its frame.
+    """
+
+    marker: Marker
+    place: np.ndarray | None = None
+
+
 class Scene:
     """Frames in a tree, as TF keeps them, and what is given in these frames; all lengths are in metres."""
 
@@ -72,6 +82,7 @@ class Scene:
         length = None if length is None else _size(length, "the length of the fixed frame's axes")
         self.frames = {fixed_frame: Frame(None, np.eye(4), length, ghost)}
         self.points, self.arrows, self.boxes, self.grippers, self.markers = {}, {}, {}, {}, {}
+        self.remarks = {}  # what RViz says of markers, drawn or not, by their ns and id
         self._text, self._fixed_frame = "", fixed_frame
 
     def copy(self):
@@ -132,6 +143,7 @@ class Scene:
             ancestor = self.frames[ancestor].parent
         length = None if length is None else _size(length, f"{what}: length")
         self.frames[name] = Frame(parent, matrix, length, bool(ghost))
+        self._place_markers()
         self._changed()
 
     def add_matrix(self, name, matrix, length=None, ghost=False):
@@ -202,27 +214,40 @@ class Scene:
         """Draw a visualization_msgs/Marker, as publishing it to RViz does; the same ns and id replace each other.
 
         `marker.action` may also delete the marker with this ns and id (DELETE) or all markers (DELETEALL). The marker
-        is copied. As in RViz, an orientation of 0, 0, 0, 0 is taken for no rotation, and color.a = 0 is invisible.
-        `lifetime` and `frame_locked` have no effect: nothing here goes away or moves by itself.
+        is copied, and stays where its frame is now; with `frame_locked` it goes where the frame goes. In a frame that is
+        not known it waits for that frame. `lifetime` has no effect: nothing here goes away by itself.
 
-        Raises ValueError if header.frame_id is not known, for a size of 0, and for a type that is not drawn.
+        As in RViz, a marker in error is not drawn (an odd number of points in a LINE_LIST, NaN, an unknown type), others
+        are drawn as they are (sizes of 0, negative ones, an orientation that is too long). RViz's words on it are shown
+        in the corner of the scene, as RViz has them in the status of its display, and are part of the description.
+
+        Raises TypeError for what ROS could not send, such as a list in the place of a Point, and ValueError for what
+        RViz draws and this does not: a MESH_RESOURCE, more than 2000 points (but in POINTS).
         """
-        _check_fields(marker)
+        check_fields(marker)
         key = (marker.ns, marker.id)
         if marker.action == Marker.DELETEALL:
             self.markers.clear()
+            self.remarks.clear()
         elif marker.action == Marker.DELETE:
             self.markers.pop(key, None)
+            self.remarks.pop(key, None)
         elif marker.action == Marker.ADD:
-            self._known(marker.header.frame_id, f"marker {marker_name(marker)}: header.frame_id")
-            try:  # raises now, not when the scene is shown
-                draw_marker(marker, Node("", marker_pose(marker)))
-            except (TypeError, ValueError) as error:
-                raise type(error)(f"marker {marker_name(marker)}: {error}") from None
-            self.markers[key] = copy.deepcopy(marker)
+            self.remarks[key] = remarks(marker)
+            self.markers.pop(key, None)
+            if ERROR not in dict(self.remarks[key]):
+                self.markers[key] = Published(copy.deepcopy(marker))
+                self._place_markers()
         else:
-            raise ValueError(f"marker {marker_name(marker)}: action must be ADD, DELETE or DELETEALL")
+            self.remarks[key] = [(ERROR, f"Unknown marker action: {marker.action}")]
         self._changed()
+
+    def _place_markers(self):
+        """See where markers stay whose frames have become known."""
+        for key, published in self.markers.items():
+            frame = published.marker.header.frame_id
+            if published.place is None and frame in self.frames and not published.marker.frame_locked:
+                self.markers[key] = replace(published, place=self.in_root(frame))
 
     # Asking
 
@@ -263,8 +288,29 @@ class Scene:
             lines.append(f"box {name} in {box.frame}: middle ({where}), {' x '.join(f'{v:.4g}' for v in box.size)} m")
         for gripper in self.grippers.values():
             lines.append(f"gripper on {gripper.frame}: opening {gripper.opening:.4g} m")
-        lines += [_describe_marker(marker) for marker in self.markers.values()]
+        lines += [_describe_marker(published.marker) for published in self.markers.values()]
+        lines += self.said(everything=True)
         return "\n".join(lines + ([self.text] if self.text else []))
+
+    def said(self, everything=False):
+        """Return the lines that RViz would say of the markers.
+
+        By default without the one on a fresh orientation, which is that of every second arrow, and taken as it is meant.
+        """
+        lines = []
+        for (ns, number), found in self.remarks.items():
+            found = [text for _, text in found if everything or text != UNINITIALIZED]
+            if published := self.markers.get((ns, number)):
+                found += self._frame_missing(published.marker.header.frame_id)
+            lines += [f"Marker {ns}/{number}: {text}" for text in found]
+        return lines
+
+    def _frame_missing(self, name):
+        """Return what RViz says of a marker whose frame is not known, and which are, as a list of one text; or []."""
+        if name in self.frames:
+            return []
+        advice = " Write it without the slash." if name.lstrip("/") in self.frames else ""
+        return [f"Frame [{name}] does not exist.{advice} Known frames: {self._known_names()}"]
 
     # For the above
 
@@ -280,8 +326,10 @@ class Scene:
         if _name(name, what) in self.frames:
             return name
         advice = " Write it without the slash." if name.lstrip("/") in self.frames else ""
-        known = ", ".join([*self.frames][:30]) + (", …" if len(self.frames) > 30 else "")
-        raise ValueError(f"{what} {name!r} is not known.{advice} Known frames: {known}")
+        raise ValueError(f"{what} {name!r} is not known.{advice} Known frames: {self._known_names()}")
+
+    def _known_names(self):
+        return ", ".join([*self.frames][:30]) + (", …" if len(self.frames) > 30 else "")
 
     def _placed(self, frame, pose, what, kind):
         """Return the known frame in which `pose` (4x4, Pose, PoseStamped) is given, and the 4x4 matrix."""
@@ -348,50 +396,6 @@ def _pose_matrix(pose, what):
     return tft.translation_matrix(position) @ tft.quaternion_matrix(quaternion)
 
 
-def marker_pose(marker):
-    """Return the 4x4 matrix of a marker's pose; an orientation of zeros, a fresh one, is no rotation, as in RViz."""
-    q, what = marker.pose.orientation, f"marker {marker_name(marker)}: the pose"
-    if any(getattr(q, name, 1) for name in "xyzw"):
-        matrix = _pose_matrix(marker.pose, what)
-    else:
-        matrix = tft.translation_matrix(xyz(marker.pose.position, f"{what}'s position"))
-    within_reach(matrix[:3, 3], f"{what}'s position")
-    return matrix
-
-
-def _check_fields(marker):
-    """Raise TypeError for what is no Marker, or one of whose fields holds something of another kind."""
-    wanted = {"header": (["frame_id"], "a Header"), "pose": (["position", "orientation"], "a Pose"),
-              "scale": ("xyz", "a Vector3"), "color": ("rgba", "a ColorRGBA")}  # fmt: skip
-    if not all(hasattr(marker, name) for name in (*wanted, "ns", "id", "type", "action", "points", "colors", "text")):
-        raise TypeError(f"publish takes one Marker; got {type(marker).__name__}")
-    for field, (names, kind) in wanted.items():
-        value = getattr(marker, field)
-        if not all(hasattr(value, name) for name in names):
-            raise TypeError(f"marker {marker_name(marker)}: {field} must be {kind}; got {type(value).__name__}")
-    for field, names, kind in (("points", "xyz", "Point"), ("colors", "rgba", "ColorRGBA")):
-        values = getattr(marker, field)
-        if not isinstance(values, (list, tuple)):
-            kind_found = type(values).__name__
-            raise TypeError(f"marker {marker_name(marker)}: {field} must be a list of {kind}s; got {kind_found}")
-        for i, value in enumerate(values):
-            if not all(hasattr(value, name) for name in names):
-                found = type(value).__name__
-                raise TypeError(f"marker {marker_name(marker)}: {field}[{i}] must be a {kind}; got {found}")
-    if not isinstance(marker.header.frame_id, str):
-        found = type(marker.header.frame_id).__name__
-        raise TypeError(f"marker {marker_name(marker)}: header.frame_id must be a text; got {found}")
-    if not isinstance(marker.text, str) or not all(
-        isinstance(n, Integral) for n in (marker.id, marker.type, marker.action)
-    ):
-        raise TypeError(f"marker {marker_name(marker)}: text must be a text, and id, type and action whole numbers")
-
-
-def marker_name(marker):
-    """Return how a marker is called in messages: its namespace and its id."""
-    return f"{marker.ns}/{marker.id}"
-
-
 def _describe_marker(marker):
     """Return one line about a marker."""
     pose = marker_pose(marker)
@@ -403,6 +407,4 @@ def _describe_marker(marker):
         text += f", {len(marker.points)} points"
     if marker.text:
         text += f', text "{marker.text}"'
-    if marker.color.a == 0 and not marker.colors:
-        text += " (invisible: color.a is 0)"
     return text

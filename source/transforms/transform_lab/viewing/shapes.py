@@ -9,7 +9,6 @@ from urllib.parse import quote
 
 import numpy as np
 
-from ..messages import Marker
 from ..validation import numbers, within_reach
 
 X_RED, Y_GREEN, Z_BLUE = (0.84, 0.12, 0.12, 1), (0.05, 0.58, 0.15, 1), (0.12, 0.30, 0.92, 1)
@@ -54,7 +53,7 @@ class Mesh:
 class Label:
     """Text at a position (3 numbers), or `beside` it: wherever around it no other label stands.
 
-    `height` is that of a capital letter, in metres; by default the text is as large as text on a page.
+    `height` is that of a capital letter, in metres, and the text a marker's; by default it is as large as text on a page.
     """
 
     text: str
@@ -180,84 +179,3 @@ def rgba(color, what):
     if values.min() < 0 or values.max() > 1:
         raise ValueError(f"{what} must be made of numbers from 0 to 1 (not to 255); got {values.tolist()}")
     return (*values.tolist(), 1.0)[:4]
-
-
-def draw_marker(marker, node):
-    """Hang on `node` what `marker` shows, in the coordinates of the marker's pose. Sizes mean what they mean in RViz.
-
-    Raises ValueError for a size of 0, an odd number of points in a LINE_LIST, and for types that are not drawn.
-    """
-    color, size, kind = rgba(marker.color, "color"), xyz(marker.scale, "scale"), marker.type
-    if len(marker.points) > MOST and kind != Marker.POINTS:
-        raise ValueError(f"a marker draws at most {MOST} points; got {len(marker.points)}. POINTS take any number")
-    points = [xyz(point, f"points[{i}]") for i, point in enumerate(marker.points)]
-    given = [rgba(c, f"colors[{i}]") for i, c in enumerate(marker.colors)]
-    triangles = kind == Marker.TRIANGLE_LIST and 3 * len(given) == len(points)  # one colour for each
-    if given and len(given) != len(points) and not triangles:
-        raise ValueError(f"colors must be as many as points, or none; got {len(given)} colors, {len(points)} points")
-    colors = [c for c in given for _ in range(3)] if triangles else given or [color] * len(points)
-    if kind == Marker.ARROW and points:
-        if len(points) != 2:
-            raise ValueError(f"an ARROW takes two points (tail and tip) or none; got {len(points)}")
-        _need_size(size[:2], "scale.x (shaft diameter) and scale.y (head diameter)")
-        tail, tip = points
-        node.solids += arrow(tail, tip, color, size[0], size[1], size[2] or 0.23 * np.linalg.norm(tip - tail))
-    elif kind == Marker.ARROW:
-        _need_size(size[:2], "scale.x (length) and scale.y (width)")
-        node.solids += arrow((0, 0, 0), (size[0], 0, 0), color, size[1], 2 * size[1], 0.23 * size[0])
-    elif kind in SOLIDS:
-        _need_size(size, "scale.x, scale.y and scale.z")
-        node.solids.append(placed(SOLIDS[kind], (0, 0, 0), size, color))
-    elif kind in SOLID_LISTS:
-        _need_size(size, "scale.x, scale.y and scale.z")
-        node.solids += [placed(SOLID_LISTS[kind], p, size, c) for p, c in zip(points, colors)]
-    elif kind in (Marker.LINE_STRIP, Marker.LINE_LIST):
-        _need_size(size[:1], "scale.x (line width)")
-        if kind == Marker.LINE_LIST and len(points) % 2:
-            raise ValueError(f"a LINE_LIST takes two points for each line; got {len(points)} points")
-        step = 2 if kind == Marker.LINE_LIST else 1
-        for start, end, c in list(zip(points, points[1:], colors))[::step]:
-            node.solids += rod(start, end, size[0], c)
-    elif kind == Marker.POINTS:
-        _need_size(size[:1], "scale.x (point width)")
-        for some in _of_one_opacity(np.reshape(colors, (-1, 4))):
-            node.clouds.append(Cloud(np.array(points)[some], np.array(colors)[some], size[0]))
-    elif kind == Marker.TEXT_VIEW_FACING:
-        _need_size(size[2:], "scale.z (height of a capital letter)")
-        node.labels.append(Label(marker.text, np.zeros(3), color, height=size[2]))
-    elif kind == Marker.TRIANGLE_LIST:
-        _need_size(size, "scale.x, scale.y and scale.z")
-        if len(points) % 3:
-            raise ValueError(f"a TRIANGLE_LIST takes three points for each triangle; got {len(points)} points")
-        corners = within_reach(np.reshape(points, (-1, 3, 3)) * size, "a triangle's corner")
-        for some in _of_one_opacity(np.reshape(colors, (-1, 3, 4))):
-            node.meshes.append(Mesh(corners[some], np.reshape(colors, (-1, 3, 4))[some]))
-    else:
-        raise ValueError(f"markers of type {marker_type(marker)} are not drawn yet; these are: {', '.join(DRAWN)}")
-
-
-def _of_one_opacity(colors):
-    """Yield, for each opacity above 0 in `colors` (Nx4 or Nx3x4), which of the N have it."""
-    opacities = colors[..., 3].reshape(len(colors), -1).mean(axis=1)
-    for opacity in np.unique(opacities[opacities > 0]):
-        yield opacities == opacity
-
-
-MOST = 2000  # of what is drawn as solids; more would take a browser seconds
-SOLIDS = {Marker.CUBE: "box", Marker.SPHERE: "sphere", Marker.CYLINDER: "cylinder"}
-SOLID_LISTS = {Marker.CUBE_LIST: "box", Marker.SPHERE_LIST: "sphere"}
-TYPE_NAMES = (
-    "ARROW CUBE SPHERE CYLINDER LINE_STRIP LINE_LIST CUBE_LIST SPHERE_LIST POINTS TEXT_VIEW_FACING"
-    " MESH_RESOURCE TRIANGLE_LIST"
-).split()
-DRAWN = [name for name in TYPE_NAMES if name != "MESH_RESOURCE"]
-
-
-def marker_type(marker):
-    """Return the name of a marker's type, such as "LINE_LIST", or its number if there is none."""
-    return dict(enumerate(TYPE_NAMES)).get(marker.type, str(marker.type))
-
-
-def _need_size(values, names):
-    if not all(values > 0):
-        raise ValueError(f"a marker's {names} must be above 0; got {', '.join(f'{v:g}' for v in values)}")
