@@ -10,8 +10,29 @@ from transform_lab import Point, Pose, Quaternion
 jax.config.update("jax_enable_x64", True)
 
 
+# Traced once each: JAX's Rotation, called as it is, is traced anew with every call.
+@jax.jit
+def _about(axis, angle):
+    return Rotation.from_rotvec(angle * axis).as_matrix()
+
+
+@jax.jit
+def _matrix(q):
+    return Rotation.from_quat(q).as_matrix()
+
+
+@jax.jit
+def _product(q1, q2):
+    return (Rotation.from_quat(q1) * Rotation.from_quat(q2)).as_quat()
+
+
+@jax.jit
+def _quaternion(R):
+    return Rotation.from_matrix(R).as_quat()  # x, y, z, w
+
+
 def rotation_about_z(degrees):
-    return Rotation.from_rotvec(jnp.array([0.0, 0.0, jnp.deg2rad(degrees)])).as_matrix()
+    return _about(jnp.array([0.0, 0.0, 1.0]), jnp.deg2rad(degrees))
 
 
 def rotation_from_axes(x_axis, y_axis):
@@ -33,7 +54,7 @@ def make_transform(R, p):
 
 
 def hand_transform():
-    return make_transform(Rotation.from_rotvec(jnp.array([-jnp.pi / 2, 0.0, 0.0])).as_matrix(), jnp.array([-0.1, 0, 0]))
+    return make_transform(_about(jnp.array([1.0, 0.0, 0.0]), -jnp.pi / 2), jnp.array([-0.1, 0.0, 0.0]))
 
 
 def _pose(p, q):
@@ -47,16 +68,16 @@ def _position(pose):
 
 def _orientation(pose):
     q = pose.orientation
-    return Rotation.from_quat(jnp.array([q.x, q.y, q.z, q.w], dtype=float))
+    return jnp.array([q.x, q.y, q.z, q.w], dtype=float)
 
 
 def transform_to_pose(matrix):
     T = jnp.asarray(matrix, dtype=float)
-    return _pose(T[:3, 3], Rotation.from_matrix(T[:3, :3]).as_quat())
+    return _pose(T[:3, 3], _quaternion(T[:3, :3]))
 
 
 def pose_to_transform(pose):
-    return make_transform(_orientation(pose).as_matrix(), _position(pose))
+    return make_transform(_matrix(_orientation(pose)), _position(pose))
 
 
 def transform_point(a_T_b, p_in_b):
@@ -68,8 +89,8 @@ def chain(*transforms):
 
 
 def transform_pose(a_T_b, pose_in_b):
-    a_R_b = Rotation.from_matrix(jnp.asarray(a_T_b, dtype=float)[:3, :3])
-    return _pose(transform_point(a_T_b, _position(pose_in_b)), (a_R_b * _orientation(pose_in_b)).as_quat())
+    q = _quaternion(jnp.asarray(a_T_b, dtype=float)[:3, :3])
+    return _pose(transform_point(a_T_b, _position(pose_in_b)), _product(q, _orientation(pose_in_b)))
 
 
 def invert_transform(a_T_b):
@@ -90,4 +111,4 @@ def pre_grasp(object_pose, distance=0.1):
 
 def waypoint(object_pose, offset):
     q = _orientation(object_pose)
-    return _pose(_position(object_pose) + q.as_matrix() @ offset, q.as_quat())
+    return _pose(_position(object_pose) + _matrix(q) @ offset, q)
