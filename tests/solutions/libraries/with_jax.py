@@ -1,4 +1,4 @@
-"""All sixteen with JAX, and returned as its arrays. Without 64 bits, float32 is not good enough for 1e-6."""
+"""All sixteen with JAX, and returned as its arrays, numbers and Rotation. Without 64 bits, float32 is not good enough for 1e-6."""
 
 from functools import reduce
 
@@ -13,7 +13,7 @@ jax.config.update("jax_enable_x64", True)
 # Traced once each: JAX's Rotation, called as it is, is traced anew with every call.
 @jax.jit
 def _about(axis, angle):
-    return Rotation.from_rotvec(angle * axis).as_matrix()
+    return Rotation.from_rotvec(angle * axis)
 
 
 @jax.jit
@@ -54,7 +54,7 @@ def make_transform(R, p):
 
 
 def hand_transform():
-    return make_transform(_about(jnp.array([1.0, 0.0, 0.0]), -jnp.pi / 2), jnp.array([-0.1, 0.0, 0.0]))
+    return make_transform(_about(jnp.array([1.0, 0.0, 0.0]), -jnp.pi / 2).as_matrix(), jnp.array([-0.1, 0.0, 0.0]))
 
 
 def _pose(p, q):
