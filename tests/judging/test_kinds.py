@@ -1,5 +1,6 @@
 """The table of kinds of answers is the one place: each of its kinds has all it needs, and a new one works everywhere."""
 
+import itertools
 import json
 import math
 import re
@@ -43,7 +44,7 @@ ANYTHING = [
     np.full(3, NAN), np.full((3, 3), np.inf), np.full((4, 4), NAN), np.array([True]), np.ones((2, 2, 2)), np.zeros((40, 40)),
     Point(1, 2, 3), Quaternion(0, 0, 0, 1), Pose(), PoseStamped(), Pose(Point(1, 2, NAN), Quaternion(0, 0, 0, 1)),
     Pose([1, 2, 3], [0, 0, 0, 1]), Pose(Point("1", None, []), Quaternion()), Pose(Point(np.zeros(2), 0, 0), Quaternion()),
-    {"a": 1}, 5j, object(), print,
+    (np.eye(3), np.zeros(3)), [np.eye(3), np.zeros(3)], (Point(1, 2, 3), Quaternion(0, 0, 0, 1)), {"a": 1}, 5j, object(), print,
 ]  # fmt: skip
 
 
@@ -103,9 +104,14 @@ def test_whatever_a_function_returns_is_judged_and_shown(returns, number):
 
 
 @every_kind
-@pytest.mark.parametrize("number", range(len(ANYTHING)))
-def test_whatever_a_function_returns_is_read_or_refused_in_words(returns, number):
-    answer = codec.decode(codec.encode(ANYTHING[number]))
+def test_whatever_a_function_returns_is_read_or_refused_in_words(returns):
+    """One thing, or two of them together, as functions in Python return two."""
+    for value in [*ANYTHING, *itertools.product(ANYTHING, repeat=2), *map(list, itertools.product(ANYTHING, repeat=2))]:
+        read_or_refused(returns, value)
+
+
+def read_or_refused(returns, value):
+    answer = codec.decode(codec.encode(value))
     try:
         parts = parts_of(returns, answer)
     except Unfit as unfit:

@@ -3,7 +3,7 @@
 | object                                                       | taken as                                        |
 |--------------------------------------------------------------|-------------------------------------------------|
 | what NumPy takes for an array: JAX, Torch, SymPy, Pinocchio  | the array                                       |
-| one rotation or transform: SciPy, spatialmath, Drake, jaxlie | its 3x3 or 4x4 matrix, the one thing that it says |
+| one rotation or transform: SciPy, JAX, spatialmath, Drake, … | its 3x3 or 4x4 matrix, the one thing that it says |
 | a number of SymPy, Fraction, Decimal, mpmath, …              | a float, an int where it is whole by its type   |
 | a truth of SymPy, …                                          | True, False                                     |
 
@@ -23,6 +23,7 @@ MOST = 1_000  # numbers of one object
 MATRICES = {
     ("scipy", "Rotation"): "as_matrix",
     ("scipy", "RigidTransform"): "as_matrix",
+    ("jax", "Rotation"): "as_matrix",
     ("jaxlie", "SO3"): "as_matrix",
     ("jaxlie", "SE3"): "as_matrix",
     ("spatialmath", "SO3"): "A",
@@ -36,7 +37,7 @@ CALLS = (
     "as_matrix()", "GetAsMatrix4()", "detach().cpu().numpy()", "to_numpy()", "toarray()", "homogeneous_matrix()",
     "ToRotationMatrix()", "R", "SE3().A", "rotation()", "matrix()",
 )  # fmt: skip
-TO_QUATERNION = ("as_quat()", "ToQuaternion()", *CALLS)  # in the field of a message
+TO_QUATERNION = ("as_quat()", "as_quaternion_xyzw()", "ToQuaternion()", *CALLS)  # in the field of a message
 FIELDS = "xyzw"  # of a quaternion
 
 
@@ -51,7 +52,7 @@ def taken(value):
         if is_matrix(value):
             return _matrix(value)
         if hasattr(value, "__array__") or _is_sequence(value):
-            return _array(np.asarray(value))
+            return _array(_as_array(value))
         return _number(value)
     except (
         Exception
@@ -77,6 +78,12 @@ def _matrix(value):
     """The matrix of a rotation or transform; of several, all of them as an array of three dimensions."""
     found = getattr(value, _giver(type(value)))
     return np.array(found() if callable(found) else found)
+
+
+def _as_array(value):
+    """As NumPy takes it; what makes lists of itself has its rows there, and may be numbered through without (mpmath)."""
+    flat = hasattr(value, "tolist") and not hasattr(value, "__array__")
+    return np.asarray(value.tolist() if flat else value)
 
 
 def _is_sequence(value):

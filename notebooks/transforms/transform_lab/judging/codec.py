@@ -65,14 +65,16 @@ def encode(value: object, depth: int = 0, room: list[int] | None = None) -> Plai
         return _other(value)
     if (name := _message(value)) is not None:
         return {"message": name, "fields": {field: _field(value, field, depth, room) for field in MESSAGES[name]}}
-    if isinstance(value, (list, tuple)) and len(value) <= LONGEST_LIST:
+    if isinstance(value, (list, tuple)) and not libraries.is_matrix(value):  # JAX's Rotation is a tuple, too
+        if len(value) > LONGEST_LIST:
+            return _other(value)
         if room is not None:
             return _things(value, depth, room)
         try:
             return _things(value, depth, [LARGEST_ARRAY])
         except _Full:
             return _other(value)
-    found = None if isinstance(value, (list, tuple)) else libraries.taken(value)
+    found = libraries.taken(value)
     return _other(value) if found is None else encode(found, depth, room)
 
 

@@ -43,10 +43,11 @@ def _no_numbers(answer):
         return f"{type_in_words(answer)} of True and False"
     if not isinstance(answer, (list, tuple)):
         return type_in_words(answer)
-    odd = next((item for item in _innermost(answer) if isinstance(item, bool) or not isinstance(item, (int, float))), 0)
-    if odd == 0 and type(odd) is int:
-        return f"{type_in_words(answer)} of rows that differ in length"
-    return f"{type_in_words(answer)} with {type_in_words(odd)} in it"
+    what = type_in_words(answer)
+    odd = [item for item in _innermost(answer) if isinstance(item, bool) or not isinstance(item, (int, float))]
+    if not odd:
+        return f"{what} of rows that differ in length"
+    return what if " of " in what else f"{what} with {type_in_words(odd[0])} in it"
 
 
 def _innermost(answer):
