@@ -606,6 +606,15 @@ TRANSFORM_POSE = Exercise(
             for identifier, says, wrong, varies, fails in (BY_TRACE, BEYOND_120, BY_ANGLES, *BY_BRANCHES)
         ),
         *(
+            Misconception(  # the quaternion of a_T_b, multiplied with the one that is given
+                identifier,
+                _with_orientation(lambda T, p, wrong=wrong: product(wrong(T), orientation(p))),
+                *says,
+                **open_where(varies, fails, lambda T, p: T),
+            )
+            for identifier, says, wrong, varies, fails in (BY_TRACE, BEYOND_120)
+        ),
+        *(
             Misconception(
                 "quaternions-added",
                 _with_orientation(lambda T, p, of=of: of(quaternion(T[:3, :3]), orientation(p))),

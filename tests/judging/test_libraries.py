@@ -1,11 +1,20 @@
-"""Objects of other libraries are taken for what they say; here by their names and protocols, for the libraries are not there."""
+"""Objects of other libraries are taken for what they say; tests/libraries has them all, and grades with them.
 
-from collections import UserList
+Here are those of SciPy and of Python itself, and others by their names and protocols.
+"""
+
+from array import array
+from collections import UserList, deque
+from decimal import Decimal
+from fractions import Fraction
 
 import numpy as np
 import pytest
-from transform_lab import Point, Pose
-from transform_lab.judging.codec import encode
+import scipy.sparse
+from scipy.spatial.transform import RigidTransform, Rotation
+from transform_lab import Point, Pose, Viewer, tft
+from transform_lab.judging.calling import call
+from transform_lab.judging.codec import Other, decode, encode
 from transform_lab.libraries import MATRICES, taken
 
 TURN = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
@@ -32,11 +41,16 @@ def test_a_rotation_or_transform_is_its_matrix_whatever_else_it_is(library, name
 
 
 @pytest.mark.parametrize(
-    "library, name, call", [("scipy", "Rotation", "as_quat()"), ("jaxlie", "SO3", "as_quaternion_xyzw()")]
+    "library, name, call",
+    [
+        ("scipy", "Rotation", "as_quat()"),
+        ("jaxlie", "SO3", "as_quaternion_xyzw()"),
+        ("pydrake", "RotationMatrix", "ToQuaternion().wxyz()"),
+    ],
 )
 def test_it_is_no_quaternion_of_a_pose_and_told_how_to_get_one(library, name, call):
     answer = made(library, name)
-    setattr(type(answer), call.removesuffix("()"), None)
+    setattr(type(answer), call.partition("(")[0], None)
     orientation = encode(Pose(Point(), answer))["fields"]["orientation"]
     assert orientation == {"other": f"{name} (.{call} makes an array of it)"}
 
@@ -60,3 +74,47 @@ class Rows:
 @pytest.mark.parametrize("rows", [TURN.tolist(), np.eye(4).tolist(), [[1, 2, 3]], [[1], [2], [3]]])
 def test_a_matrix_has_the_shape_of_its_lists(rows):
     assert encode(Rows(rows)) == encode(np.array(rows))
+
+
+REAL = [
+    (Fraction(1, 4), 0.25),
+    (Decimal("0.25"), 0.25),
+    (array("d", [1, 2, 3]), [1, 2, 3]),
+    (deque([1, 2, 3]), [1, 2, 3]),
+    (range(3), [0, 1, 2]),
+    (np.array([Fraction(1, 2), 1], dtype=object), [0.5, 1]),
+    (Rotation.from_matrix(TURN), TURN),
+    (RigidTransform.from_matrix(np.eye(4)), np.eye(4)),
+    (Rotation.from_matrix([TURN, TURN]), [TURN, TURN]),
+]
+
+
+@pytest.mark.parametrize("answer, numbers", REAL, ids=[type(answer).__name__ for answer, _ in REAL])
+def test_what_holds_numbers_is_these_numbers(answer, numbers):
+    np.testing.assert_allclose(decode(encode(answer)), numbers, atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    "answer", [1j, np.complex128(1j), np.array([1j]), np.array([None, 1]), b"abc", {1, 2}, scipy.sparse.eye(3), int]
+)
+def test_what_holds_none_or_would_lose_some_is_refused(answer):
+    assert isinstance(decode(encode(answer)), Other)
+
+
+def test_an_object_that_fails_when_it_is_asked_is_the_students_error():
+    class Failing:
+        def __getattr__(self, name):
+            raise RuntimeError(f"no {name}")
+
+    reply = call(lambda: Failing(), [], {})
+    assert reply.outcome == "raised" and reply.error.startswith("RuntimeError: no ")
+
+
+def test_the_viewer_takes_a_transform_and_tft_says_what_to_call():
+    viewer = Viewer("a")
+    viewer.add_frame("b", RigidTransform.from_translation([1, 2, 3]))
+    np.testing.assert_array_equal(viewer.lookup("a", "b")[:3, 3], [1, 2, 3])
+    with pytest.raises(TypeError, match=r"not a RigidTransform \(\.as_matrix\(\) makes an array of it\)"):
+        tft.quaternion_from_matrix(RigidTransform.identity())
+    with pytest.raises(TypeError, match="not a SE3$"):  # which has x, y and z, and is no Point
+        tft.quaternion_matrix(made("spatialmath", "SE3"))

@@ -55,7 +55,7 @@ class RViz:
         self._screen, self._program, self._node, self._corner, self._drawn = screen, program, node, corner, 0
 
     def _ask(self, task, values):
-        self._node.stdin.write(json.dumps([task, values]) + "\n")
+        self._node.stdin.write(json.dumps([task, values], default=lambda moment: moment.to_sec()) + "\n")
         self._node.stdin.flush()
         return json.loads(self._node.stdout.readline())
 

@@ -37,7 +37,13 @@ CALLS = (
     "as_matrix()", "GetAsMatrix4()", "detach().cpu().numpy()", "to_numpy()", "toarray()", "homogeneous_matrix()",
     "ToRotationMatrix()", "R", "SE3().A", "rotation()", "matrix()",
 )  # fmt: skip
-TO_QUATERNION = ("as_quat()", "as_quaternion_xyzw()", "ToQuaternion()", *CALLS)  # in the field of a message
+TO_QUATERNION = (
+    "as_quat()",
+    "as_quaternion_xyzw()",
+    "ToQuaternion().wxyz()",
+    "vec_xyzs",
+    *CALLS,
+)  # in the field of a message
 FIELDS = "xyzw"  # of a quaternion
 
 

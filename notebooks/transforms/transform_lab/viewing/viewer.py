@@ -19,7 +19,6 @@ lifetime              the marker goes away                         it stays
 frame_id unknown      a marker waits in a queue of 100, DELETE too any number waits; DELETE deletes
 MESH_RESOURCE         is drawn                                     ValueError
 over 2000 points      are drawn                                    ValueError (POINTS: any number)
-text height below 0   RViz ends itself (an assertion of OGRE)       is not drawn, and says so
 ===================== ============================================ =================================================
 """
 

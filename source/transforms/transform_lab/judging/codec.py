@@ -43,10 +43,11 @@ class NotPlain(ValueError):
     """What was received is not plain data of a permitted size."""
 
 
-def encode(value: object, depth: int = 0, room: list[int] | None = None) -> Plain:
+def encode(value: object, depth: int = 0, room: list[int] | None = None, calls: tuple = libraries.CALLS) -> Plain:
     """Plain data for `value`, of bounded size; what has no plain form becomes `{"other": type name}`.
 
     room: how many more things may be in the outermost list, as its one item; None outside of lists
+    calls: what may be said of an object of another library, see transform_lab.libraries.described
     """
     if type(value) is float:  # most of all there is
         return _number(value)
@@ -75,13 +76,13 @@ def encode(value: object, depth: int = 0, room: list[int] | None = None) -> Plai
         except _Full:
             return _other(value)
     found = libraries.taken(value)
-    return _other(value) if found is None else encode(found, depth, room)
+    return _other(value, calls) if found is None else encode(found, depth, room)
 
 
 def _field(message, field, depth, room):
     """A field of a message; another library's rotation is no Quaternion, and is called what it is."""
-    value = getattr(message, field)
-    return _other(value, libraries.TO_QUATERNION) if libraries.is_matrix(value) else encode(value, depth + 1, room)
+    value, calls = getattr(message, field), libraries.TO_QUATERNION
+    return _other(value, calls) if libraries.is_matrix(value) else encode(value, depth + 1, room, calls)
 
 
 def _things(value, depth, room):

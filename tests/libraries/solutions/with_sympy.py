@@ -1,6 +1,7 @@
 """All sixteen with SymPy: exact where the arguments are, and returned as SymPy's own matrices, numbers and truths."""
 
-from sympy import And, Matrix, Max, Or, Quaternion as Q, Rational, eye, pi, prod, rad, rot_ccw_axis1, rot_ccw_axis3
+from sympy import And, Matrix, Max, Or, Rational, eye, pi, prod, rad, rot_ccw_axis1, rot_ccw_axis3
+from sympy import Quaternion as Q
 from transform_lab import Point, Pose, Quaternion
 
 

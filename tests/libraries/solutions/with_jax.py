@@ -1,4 +1,4 @@
-"""All sixteen with JAX, and returned as its arrays, numbers and Rotation. Without 64 bits, float32 is not good enough for 1e-6."""
+"""All sixteen with JAX, and returned as its arrays, numbers and Rotation. Without 64 bits, 1e-6 is too fine for float32."""
 
 from functools import reduce
 

@@ -43,9 +43,7 @@ def transform_to_pose(matrix):
 
 def pose_to_transform(pose):
     p, q = pose.position, pose.orientation
-    return tf.concatenate_matrices(
-        tf.translation_matrix([p.x, p.y, p.z]), tf.quaternion_matrix([q.w, q.x, q.y, q.z])
-    )
+    return tf.concatenate_matrices(tf.translation_matrix([p.x, p.y, p.z]), tf.quaternion_matrix([q.w, q.x, q.y, q.z]))
 
 
 def transform_point(a_T_b, p_in_b):
@@ -87,6 +85,4 @@ def pre_grasp(object_pose, distance=0.1):
 
 
 def waypoint(object_pose, offset):
-    return transform_to_pose(
-        tf.concatenate_matrices(pose_to_transform(object_pose), tf.translation_matrix(offset))
-    )
+    return transform_to_pose(tf.concatenate_matrices(pose_to_transform(object_pose), tf.translation_matrix(offset)))
