@@ -19,7 +19,7 @@ from .. import ASSIGNMENT
 from .bounds import COURSE, FOLDER, PATIENCE, WRITABLE, NotStarted
 
 HERE = Path(__file__).parent
-CODE = ("channel.py", "executor.py", "forkserver.py", "seccomp.py")  # what runs in a notebook's process
+CODE = ("channel.py", "executor.py", "forkserver.py", "outputs.py", "seccomp.py", "shell.py")  # what runs in a notebook's process
 
 
 class Namespaces:

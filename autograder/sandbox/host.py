@@ -36,7 +36,7 @@ LINUX = sys.platform == "linux"
 CREDENTIALS = struct.Struct("3i")  # process, user, group: what the kernel tells of who sent something; see unix(7)
 ENVIRONMENT = {
     "OPENBLAS_NUM_THREADS": "1",
-    "PATH": "/usr/bin:/bin",
+    "PATH": os.pathsep.join([str(Path(sys.executable).parent), "/usr/bin", "/bin"]),
     "LANG": "C.UTF-8",
     "TRANSFORM_LAB_GRADING": "1",
     "MPLBACKEND": "module://matplotlib_inline.backend_inline",
@@ -51,7 +51,7 @@ class Ended(Exception):
         self.status, self.reason = status, reason
 
 
-@dataclass
+@dataclass(eq=False)
 class CellRun:
     """What running one cell gave, as nbformat outputs (dictionaries; not validated yet)."""
 
@@ -59,6 +59,13 @@ class CellRun:
     execution_count: int | None = None
     ended: bool = False  # the cell called exit() or quit()
     failed: bool = False  # it raised an error
+    changed: list = field(default_factory=list)  # the CellRuns above whose outputs it changed, by a display's handle
+    cell: object = None  # what it is the run of, for whoever asked for it
+
+    def change(self, position, output):
+        """Show another output in place of one; it is no longer there if there were too many."""
+        if position < len(self.outputs):
+            self.outputs[position] = dict(output)
 
 
 FORGED = "its process gave an answer that the grader's own code never gives"
@@ -340,6 +347,7 @@ class NotebookProcess(Asked):
         self.time = time_of_it
         self.namespaces = self.account = self.folder = None
         self.snapshots, self.outputs_left = [], MOST_OUTPUTS
+        self.runs = []  # a CellRun for each cell, in their order
         settings = {"files": sandbox.files, "isolated": sandbox.isolated}
         server = ForkServer.serving(sandbox.package)
         try:
@@ -416,10 +424,17 @@ class NotebookProcess(Asked):
             outputs = [dict(output) for output in reply["outputs"][: self.outputs_left]]
             self.outputs_left -= len(outputs)
             count = reply["execution_count"]
-            return CellRun(
-                outputs, count if type(count) is int else None, reply["ended"] is True, reply.get("failed") is True
+            changed = {self.runs[cell]: self.runs[cell].change(at, output) for cell, at, output in reply["changed"]}
+            run = CellRun(
+                outputs,
+                count if type(count) is int else None,
+                reply["ended"] is True,
+                reply.get("failed") is True,
+                list(changed),
             )
-        except (KeyError, TypeError, ValueError) as error:
+            self.runs.append(run)
+            return run
+        except (LookupError, TypeError, ValueError) as error:
             raise self._ended("killed", FORGED) from error
 
     def calls(self, name, cases):
