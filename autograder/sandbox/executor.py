@@ -46,7 +46,9 @@ class Executor:
         self.shell = kernel.shell = ZMQInteractiveShell.instance(
             outputs=self.outputs, kernel=kernel, colors="nocolor", config=CONFIG
         )
+        self.shell.extension_manager.load_extension("storemagic")  # as ipykernel does
         Comm.outputs, comm.create_comm = self.outputs, Comm
+        sys.breakpointhook = lambda *_, **__: None  # as where no debugger listens
         builtins.input, getpass.getpass = kernel.raw_input, kernel.getpass
         self.libc = ctypes.CDLL(None)
         self.context = contextvars.copy_context()  # of all cells and calls: NumPy and decimal keep their settings there
@@ -91,6 +93,7 @@ class Executor:
             self.running = True
             # A Jupyter cell runs inside an event loop: `await` works, asyncio.run says that a loop is running.
             failed = not self.loop.run_until_complete(self.loop.create_task(self._run(source), context=self.context))
+            self.context.run(self.outputs.tell)
         except (Exception, KeyboardInterrupt):  # IPython shows those of the cell itself; this one came between its own steps
             self.shell.showtraceback()
         finally:

@@ -24,19 +24,20 @@ from .. import ASSIGNMENT
 from ..untrusted import printable
 from .account import Account
 from .bounds import COURSE, PATIENCE, WALL, Allowance, Limits, NotStarted
-from .bubblewrap import Namespaces, copy_code
+from .bubblewrap import USER, Namespaces, copy_code
 from .channel import MOST_RECEIVED, Channel, Closed, Garbled, Late
 from .watch import UserWatch, Watch, waited
 
-NOBODY = 100_000  # when the grader is root, each notebook runs as a user of its own: this number and up
 GLANCE = 0.25  # seconds between two looks at what a sandbox uses
 MOST_OUTPUTS = 2_000  # that a notebook may make
 MOST_REPLIED = 1_000_000  # bytes that come of all calls of an exercise
 LINUX = sys.platform == "linux"
 CREDENTIALS = struct.Struct("3i")  # process, user, group: what the kernel tells of who sent something; see unix(7)
+SHELL = next(filter(os.path.exists, ("/bin/bash", "/bin/sh")))  # of `!commands`; what most people have
 ENVIRONMENT = {
     "OPENBLAS_NUM_THREADS": "1",
     "PATH": os.pathsep.join([str(Path(sys.executable).parent), "/usr/bin", "/bin"]),
+    "SHELL": SHELL,
     "LANG": "C.UTF-8",
     "TRANSFORM_LAB_GRADING": "1",
     "MPLBACKEND": "module://matplotlib_inline.backend_inline",
@@ -354,10 +355,10 @@ class NotebookProcess(Asked):
             if sandbox.isolated == "user":
                 self.account = Account(server.code / sandbox.package.name)
                 settings |= {"limits": self.limits.resources(), "number": self.account.number}
-                settings |= {"folder": str(self.account.folder), "environment": {"HOME": str(self.account.home)}}
+                settings |= {"folder": str(self.account.folder), "environment": {"HOME": str(self.account.home), "USER": USER}}
             elif sandbox.isolated:
                 self.namespaces = Namespaces(server.code)
-                settings |= {"limits": self.limits.resources(), "number": NOBODY + self.namespaces.pid}
+                settings |= {"limits": self.limits.resources(), "number": self.namespaces.number}
                 settings |= {"folder": str(COURSE / ASSIGNMENT), "environment": {"HOME": "/tmp"}}
             else:
                 # A folder of its own with the same files, which is tidy, but protects nothing.

@@ -22,6 +22,7 @@ class Outputs:
         self.cell, self.shown = 0, {}  # its number; {(cell, position): output} of those above that have a display id
         self.changed = set()  # places of these that were changed since they were last taken
         self.captured, self.capturing = {}, []  # {Comm of an ipywidgets.Output: its outputs}, and those that take what comes
+        self.renewed = {}  # of the first, those that were told of less than they hold
         self.raw, self.read, self.process = {}, {}, None
 
     def start(self, raw):
@@ -61,7 +62,7 @@ class Outputs:
         """Take back what the cell has shown, at once or when more comes."""
         self._collect()
         if self.capturing:
-            self.captured[self.capturing[-1]].clear()
+            self._current().clear()
         elif wait:
             self.clear_next = True
         else:
@@ -81,6 +82,14 @@ class Outputs:
         self.cell += 1
         self._begin()
         return taken, changed
+
+    def tell(self):
+        """Tell each ipywidgets.Output what it holds now, as a browser does between cells."""
+        renewed, self.renewed = self.renewed, {}
+        for widget in renewed:
+            state = {"outputs": [_sent(output) for output in self.captured[widget]]}
+            data = {"method": "update", "state": state, "buffer_paths": []}
+            widget.handle_msg({"content": {"data": data}, "buffers": []})
 
     def forget(self):
         """Drop them: nobody sees what a called function shows."""
@@ -111,13 +120,20 @@ class Outputs:
         if self.left <= 0:
             return
         self.left, self.held = self.left - size, self.held + size
-        items = self.captured[self.capturing[-1]] if self.capturing else self.items
+        items = self._current()
         if output["output_type"] == "stream" and items and items[-1].get("name") == output["name"]:
             items[-1]["text"] += output["text"]
         elif output["output_type"] == "stream" or self.left > 0:
             items.append(output)
         if self.left <= 0:
             items.append(CUT | {"text": [CUT["text"]]})
+
+    def _current(self):
+        """Where outputs go now."""
+        if not self.capturing:
+            return self.items
+        self.renewed[self.capturing[-1]] = True
+        return self.captured[self.capturing[-1]]
 
     def _clear(self):
         if self.left > 0:  # who has shown too much has done so
@@ -172,12 +188,6 @@ class Comm(BaseComm):
                 self.outputs.capturing.append(self)
             else:
                 self.outputs.capturing.pop()
-
-    def tell(self):
-        """Tell an ipywidgets.Output what it holds, as a browser does between cells."""
-        state = {"outputs": [_sent(output) for output in self.outputs.captured[self]]}
-        data = {"method": "update", "state": state, "buffer_paths": []}
-        self.handle_msg({"content": {"data": data}, "buffers": []})
 
 
 def _display_id(output):

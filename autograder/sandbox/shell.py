@@ -126,6 +126,7 @@ class Kernel:
         return self.shell.get_parent()
 
     def raw_input(self, prompt=""):
+        """There is nobody to answer."""
         raise StdinNotImplementedError("raw_input was called, but this frontend does not support input requests.")
 
     def getpass(self, prompt="", stream=None):
