@@ -94,7 +94,10 @@ class Executor:
             # A Jupyter cell runs inside an event loop: `await` works, asyncio.run says that a loop is running.
             failed = not self.loop.run_until_complete(self.loop.create_task(self._run(source), context=self.context))
             self.context.run(self.outputs.tell)
-        except (Exception, KeyboardInterrupt):  # IPython shows those of the cell itself; this one came between its own steps
+        except (
+            Exception,
+            KeyboardInterrupt,
+        ):  # IPython shows those of the cell itself; this one came between its own steps
             self.shell.showtraceback()
         finally:
             self.running = False
@@ -147,8 +150,10 @@ class Executor:
         if shell.should_run_async(source, transformed_cell=cell, preprocessing_exc_tuple=problem):
             result = None
             try:
-                result = await shell.run_cell_async(
-                    source, store_history=True, transformed_cell=cell, preprocessing_exc_tuple=problem
+                result = await asyncio.ensure_future(
+                    shell.run_cell_async(
+                        source, store_history=True, transformed_cell=cell, preprocessing_exc_tuple=problem
+                    )
                 )
             finally:
                 shell.events.trigger("post_execute")  # figures are shown here

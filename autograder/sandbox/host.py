@@ -355,7 +355,10 @@ class NotebookProcess(Asked):
             if sandbox.isolated == "user":
                 self.account = Account(server.code / sandbox.package.name)
                 settings |= {"limits": self.limits.resources(), "number": self.account.number}
-                settings |= {"folder": str(self.account.folder), "environment": {"HOME": str(self.account.home), "USER": USER}}
+                settings |= {
+                    "folder": str(self.account.folder),
+                    "environment": {"HOME": str(self.account.home), "USER": USER},
+                }
             elif sandbox.isolated:
                 self.namespaces = Namespaces(server.code)
                 settings |= {"limits": self.limits.resources(), "number": self.namespaces.number}

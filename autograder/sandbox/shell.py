@@ -3,7 +3,6 @@
 import inspect
 import itertools
 import os
-import sys
 import tempfile
 import zlib
 from functools import partial
@@ -85,7 +84,9 @@ class XCachingCompiler(CachingCompiler):
     def get_code_name(self, raw_code, code, number):
         number = zlib.crc32(raw_code.encode(errors="replace"))
         name = f"{tempfile.gettempdir()}/ipykernel_{os.getpid()}/{number}.py"
-        inspect.modulesbyfile[name] = ""  # no module's: else all modules are searched for it, at each line of a traceback
+        inspect.modulesbyfile[name] = (
+            ""  # no module's: else all modules are searched for it, at each line of a traceback
+        )
         return name
 
 

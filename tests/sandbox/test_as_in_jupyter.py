@@ -45,7 +45,8 @@ def in_jupyter(slow, tmp_path_factory):
             (folder / name).parent.mkdir(exist_ok=True)
             (folder / name).write_bytes(content)
         notebook = nbformat.v4.new_notebook(cells=list(map(nbformat.v4.new_code_cell, sources)))
-        environment = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "CI", "COLUMNS")}
+        ours = ("PYTHON", "PYTEST", "CI", "COLUMNS")  # ipykernel leaves out what commands write, where it sees pytest's
+        environment = {name: value for name, value in os.environ.items() if not name.startswith(ours)}
         environment |= {"HOME": str(home), "TRANSFORM_LAB_GRADING": "1", "LANG": "C.UTF-8", "SHELL": SHELL}
         client = NotebookClient(
             notebook, timeout=PATIENCE, allow_errors=True, resources={"metadata": {"path": str(folder)}}
@@ -71,7 +72,9 @@ def in_sandbox(sandboxed):
             runs = iter(process.runs)
             shown = [next(runs) if source.strip() else None for source in sources]
         return [
-            (comparable(run.outputs, Path("/course/transforms"), Path("/tmp")), run.execution_count) if run else ([], None)
+            (comparable(run.outputs, Path("/course/transforms"), Path("/tmp")), run.execution_count)
+            if run
+            else ([], None)
             for run in shown
         ]
 
@@ -172,7 +175,7 @@ calls = searched = 0
 def count(frame, event, _):
     global calls, searched
     calls += event == "call"
-    searched += event == "call" and frame.f_code is inspect.ismodule.__code__  # in a search of all modules, for one line of a traceback
+    searched += event == "call" and frame.f_code is inspect.ismodule.__code__  # a module, for a line of the traceback
 sys.setprofile(count)
 get_ipython().showtraceback((type(error), error, error.__traceback__))
 sys.setprofile(None)
