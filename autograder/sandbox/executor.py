@@ -13,6 +13,7 @@ import ctypes
 import getpass
 import os
 import random
+import re
 import signal
 import sys
 import sysconfig
@@ -94,10 +95,7 @@ class Executor:
             # A Jupyter cell runs inside an event loop: `await` works, asyncio.run says that a loop is running.
             failed = not self.loop.run_until_complete(self.loop.create_task(self._run(source), context=self.context))
             self.context.run(self.outputs.tell)
-        except (
-            Exception,
-            KeyboardInterrupt,
-        ):  # IPython shows those of the cell itself; this one came between its own steps
+        except (Exception, KeyboardInterrupt):  # IPython shows those of the cell; this one came between its own steps
             self.shell.showtraceback()
         finally:
             self.running = False
@@ -141,25 +139,20 @@ class Executor:
 
     async def _run(self, source):
         """As ipykernel does it; whether it ran without an error."""
-        shell, problem = self.shell, None
+        shell = self.shell
         shell.display_failed = False
         try:
             cell = shell.transform_cell(source)
-        except Exception:  # of a transformer that the student has put in: shown as the cell's error
-            cell, problem = source, sys.exc_info()
-        if shell.should_run_async(source, transformed_cell=cell, preprocessing_exc_tuple=problem):
-            result = None
-            try:
-                result = await asyncio.ensure_future(
-                    shell.run_cell_async(
-                        source, store_history=True, transformed_cell=cell, preprocessing_exc_tuple=problem
-                    )
-                )
-            finally:
-                shell.events.trigger("post_execute")  # figures are shown here
-                shell.events.trigger("post_run_cell", result)
-        else:
-            result = shell.run_cell(source, store_history=True)
+        except Exception:  # of a transformer that the student has put in: IPython meets it again, and shows it
+            return shell.run_cell(source, store_history=True).success
+        running, result = shell.run_cell_async(source, store_history=True, transformed_cell=cell), None
+        if re.search("await|async", cell) and shell.should_run_async(source, transformed_cell=cell):
+            running = asyncio.ensure_future(running)  # what it sets in its context ends with it
+        try:
+            result = await running
+        finally:
+            shell.events.trigger("post_execute")  # figures are shown here
+            shell.events.trigger("post_run_cell", result)
         return result.success and not shell.display_failed
 
     def _interrupt(self, *_):

@@ -113,7 +113,10 @@ class KernelMagics(Magics):
         with open(arg_s) as file:
             page.page(file.read())
 
-    more = line_magic("more")(less)
+    @line_magic
+    def more(self, arg_s):
+        """As %less."""
+        self.less(arg_s)
 
     @line_magic
     def man(self, arg_s):

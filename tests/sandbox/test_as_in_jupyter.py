@@ -10,9 +10,13 @@ from pathlib import Path
 
 import nbformat
 import pytest
+from editing import solution
 from jupyter_cells import HANDED_IN, NOTEBOOKS
 from support import PATIENCE, ROOT
 
+from autograder.course import Course
+from autograder.grading.grade import grade_submission, grading_run
+from autograder.intake.submission import Submission
 from autograder.sandbox import Ended, Limits, Sandbox
 from autograder.sandbox.host import SHELL
 
@@ -156,6 +160,17 @@ def test_cells_show_what_they_show_in_jupyter(in_jupyter, in_sandbox, name):
         if (there == here) is not (why is None):
             wrong.append({"cell": source, "differs": why, "in Jupyter": there, "in the sandbox": here})
     assert not wrong, json.dumps(wrong, indent=1)
+
+
+def test_a_graded_notebook_shows_what_a_cell_below_changed(sandboxed):
+    name = "3_chaining"
+    raw = solution(name)
+    for source in ("handle.update('changed')", "handle = display('first', display_id=True)"):
+        raw["cells"].insert(1, {"cell_type": "code", "metadata": {}, "source": source})
+    run = grading_run(Course(ROOT), 7, notebooks=[name])
+    graded = grade_submission(Submission("ann", {f"{name}.ipynb": json.dumps(raw).encode()}), run)
+    above, below = json.loads(graded.notebooks[name])["cells"][1:3]
+    assert above["outputs"][0]["data"] == {"text/plain": "'changed'"} and below["outputs"] == []
 
 
 # Exceptions with a thousand frames and more, kept as `error`.
