@@ -170,7 +170,7 @@ def test_a_graded_notebook_shows_what_a_cell_below_changed(sandboxed):
     run = grading_run(Course(ROOT), 7, notebooks=[name])
     graded = grade_submission(Submission("ann", {f"{name}.ipynb": json.dumps(raw).encode()}), run)
     above, below = json.loads(graded.notebooks[name])["cells"][1:3]
-    assert above["outputs"][0]["data"] == {"text/plain": "'changed'"} and below["outputs"] == []
+    assert above["outputs"][0]["data"] == {"text/plain": ["'changed'"]} and below["outputs"] == []
 
 
 # Exceptions with a thousand frames and more, kept as `error`.
