@@ -83,11 +83,7 @@ class XCachingCompiler(CachingCompiler):
 
     def get_code_name(self, raw_code, code, number):
         number = zlib.crc32(raw_code.encode(errors="replace"))
-        name = f"{tempfile.gettempdir()}/ipykernel_{os.getpid()}/{number}.py"
-        inspect.modulesbyfile[name] = (
-            ""  # no module's: else all modules are searched for it, at each line of a traceback
-        )
-        return name
+        return f"{tempfile.gettempdir()}/ipykernel_{os.getpid()}/{number}.py"
 
 
 @magics_class
@@ -216,6 +212,9 @@ def few_records(all_records, traceback, context, tb_offset):
         return frame.f_code, number
 
     stack = list(iter_stack(traceback))
+    for name in {one.tb_frame.f_code.co_filename for one in stack}:
+        if not os.path.exists(name):  # it is no module's: else all modules are searched for it, again for each frame
+            inspect.modulesbyfile[name] = inspect.modulesbyfile[os.path.abspath(name)] = ""
     if len(stack) <= MOST_FRAMES:
         return all_records(traceback, context, tb_offset)
     records = []
