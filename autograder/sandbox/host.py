@@ -428,7 +428,9 @@ class NotebookProcess(Asked):
             outputs = [dict(output) for output in reply["outputs"][: self.outputs_left]]
             self.outputs_left -= len(outputs)
             count = reply["execution_count"]
-            changed = {self.runs[cell]: self.runs[cell].change(at, output) for cell, at, output in reply["changed"]}
+            changed = {
+                self.runs[cell]: self.runs[cell].change(at, output) for cell, at, output in reply.get("changed", [])
+            }
             run = CellRun(
                 outputs,
                 count if type(count) is int else None,

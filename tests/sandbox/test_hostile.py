@@ -388,7 +388,8 @@ def odd(source, honest=actions['run_cell']):
     outputs = [{'output_type': t, 'name': {}, 'text': [1], 'data': d, 'traceback': [{}], 'evalue': '\\ud800'}
                for t in ('stream', 'error', 'display_data', 'execute_result', [], None, 7)
                for d in ({}, [], {'text/html': ['<script>', 'alert(1)</script>'], 'text/plain': '\\udfff'}, {'x': 1})]
-    return {'outputs': outputs, 'execution_count': 10**4000, 'ended': 'no'}
+    changed = [[0, 0, output] for output in outputs]
+    return {'outputs': outputs, 'changed': changed, 'execution_count': 10**4000, 'ended': 'no'}
 actions['run_cell'] = odd""",
     ),
 ]
