@@ -901,7 +901,7 @@ FLOODS = [
         for _ in range(300):
             os.write(1, b'x' * 10**6)
         """,
-        "File too large",
+        TOO_MUCH,
     ),
     harm("a command without end", "!yes hostile | head -c 300000000", "hostile"),
     harm(
