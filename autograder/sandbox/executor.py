@@ -141,15 +141,19 @@ class Executor:
         """As ipykernel does it; whether it ran without an error."""
         shell = self.shell
         shell.display_failed = False
-        try:
+        cell = None
+        with contextlib.suppress(Exception):  # of a transformer that the student has put in: IPython meets it again
             cell = shell.transform_cell(source)
-        except Exception:  # of a transformer that the student has put in: IPython meets it again, and shows it
+        if cell is None:
             return shell.run_cell(source, store_history=True).success
         running, result = shell.run_cell_async(source, store_history=True, transformed_cell=cell), None
         if re.search("await|async", cell) and shell.should_run_async(source, transformed_cell=cell):
             running = asyncio.ensure_future(running)  # what it sets in its context ends with it
         try:
             result = await running
+        except Exception:  # of a student's that IPython met while it showed another
+            shell.showtraceback(running_compiled_code=True)
+            return False
         finally:
             shell.events.trigger("post_execute")  # figures are shown here
             shell.events.trigger("post_run_cell", result)

@@ -52,6 +52,7 @@ def in_jupyter(slow, tmp_path_factory):
         ours = ("PYTHON", "PYTEST", "CI", "COLUMNS")  # ipykernel leaves out what commands write, where it sees pytest's
         environment = {name: value for name, value in os.environ.items() if not name.startswith(ours)}
         environment |= {"HOME": str(home), "TRANSFORM_LAB_GRADING": "1", "LANG": "C.UTF-8", "SHELL": SHELL}
+        environment["PYTHONDONTWRITEBYTECODE"] = "1"
         client = NotebookClient(
             notebook, timeout=PATIENCE, allow_errors=True, resources={"metadata": {"path": str(folder)}}
         )
@@ -95,6 +96,7 @@ NOISE = [
     (r"(/tmp/ipykernel_\d+/)?\b\d+\.py\b", "CELL.py"),
     (r"\b(Thread|Task)-\d+", r"\1-N"),
     (r"\d[\d.e+]* ?(s|ms|μs|ns)\b", "TIME"),
+    (r"(maximum recursion depth exceeded)[\w ]*", r"\1"),  # in whose hands it is then, hangs on where it began
     # what lies in the kernel's own code: its files are others
     (rf"(?m)^File \S*(?:/ipykernel/|/grader-\w+/).*\n(?:(?!{FRAME}).*\n?)*", ""),
     (r"\n+ +\[\.\.\. skipping similar frames: .*", ""),  # see `once`
