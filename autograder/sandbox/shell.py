@@ -192,9 +192,13 @@ class ZMQInteractiveShell(InteractiveShell):
     def enable_gui(self, gui=None):
         """There is no window to show anything in."""
 
-    def get_parent(self):
+    @property
+    def parent_header(self):
         """The message that ipykernel runs the cell for, as far as ipywidgets asks for it."""
         return {"header": {"msg_id": str(self.outputs.cell)}}
+
+    def get_parent(self):
+        return self.parent_header
 
     def set_parent(self, parent):
         """Whatever comes is the running cell's."""
