@@ -34,7 +34,14 @@ ROOMS = {
     ],
 }
 FOLDERS = {"transform_lab": ROOT / "source" / "transforms", "autograder": ROOT}
-INSIDE = {"channel", "executor", "forkserver", "seccomp"}  # run in a notebook's process, where the grader is not
+INSIDE = {
+    "channel",
+    "executor",
+    "forkserver",
+    "outputs",
+    "seccomp",
+    "shell",
+}  # run in a notebook's process, where the grader is not
 TOP_LEVEL = {
     "README.md",
     "CONTRIBUTING.md",

@@ -168,11 +168,12 @@ class _Run:
     def _run_cell(self, process, cell, position, at_once):
         """Run a cell of the student's; whether it ended the notebook."""
         run = process.run_cell(cell.source)
-        outputs = [nbformat.from_dict(output) for output in map(safe, run.outputs) if output]
         if not at_once:
-            cell.outputs, cell.execution_count = outputs, run.execution_count
+            run.cell, cell.execution_count = cell, run.execution_count
+            for shown in (run, *run.changed):
+                shown.cell.outputs = [nbformat.from_dict(output) for output in map(safe, shown.outputs) if output]
             if run.failed:
-                self.failures[position] = failed(cell.source, outputs)
+                self.failures[position] = failed(cell.source, cell.outputs)
         return run.ended
 
     def _judge(self, name, process, answers=()):

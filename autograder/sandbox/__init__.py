@@ -1,6 +1,6 @@
 """Runs a student's notebook where it can do no harm: a small IPython in bubblewrap, spoken to over a socket.
 
-probe -> host -> bubblewrap or account, watch -> bounds; inside: forkserver -> executor, seccomp, channel
+probe -> host -> bubblewrap or account, watch -> bounds; inside: forkserver -> executor -> shell, outputs; seccomp, channel
 """
 
 from .bounds import Limits, NotStarted

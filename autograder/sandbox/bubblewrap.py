@@ -19,7 +19,16 @@ from .. import ASSIGNMENT
 from .bounds import COURSE, FOLDER, PATIENCE, WRITABLE, NotStarted
 
 HERE = Path(__file__).parent
-CODE = ("channel.py", "executor.py", "forkserver.py", "seccomp.py")  # what runs in a notebook's process
+NOBODY = 100_000  # when the grader is root, each notebook runs as a user of its own: this number and up
+USER = "student"  # what that user is called
+CODE = (
+    "channel.py",
+    "executor.py",
+    "forkserver.py",
+    "outputs.py",
+    "seccomp.py",
+    "shell.py",
+)  # what runs in a notebook's process
 
 
 class Namespaces:
@@ -30,11 +39,20 @@ class Namespaces:
 
     def __init__(self, code):
         # The arguments go by a file: as a command line, anybody inside could read them.
-        with tempfile.TemporaryFile() as arguments, tempfile.TemporaryFile() as rules, tempfile.TemporaryFile() as told:
-            arguments.write(b"\0".join(os.fsencode(argument) for argument in command(code)))
+        with (
+            tempfile.TemporaryFile() as arguments,
+            tempfile.TemporaryFile() as rules,
+            tempfile.TemporaryFile() as told,
+            tempfile.NamedTemporaryFile("w", prefix="user-") as user,
+            tempfile.NamedTemporaryFile("w", prefix="group-") as group,
+        ):
+            names = {"/etc/passwd": user.name, "/etc/group": group.name}
+            arguments.write(b"\0".join(os.fsencode(argument) for argument in command(code, names)))
             rules.write(compiled_filter())  # also for those that only hold the sandbox open: nobody in it needs more
             for file in (arguments, rules):
                 file.seek(0)
+            for file in (user, group):
+                os.fchmod(file.fileno(), 0o644)
             given = {"--args": arguments.fileno(), "--seccomp": rules.fileno(), "--info-fd": told.fileno()}
             self.process = subprocess.Popen(
                 [shutil.which("bwrap"), *(str(word) for option in given.items() for word in option), "cat"],
@@ -52,6 +70,10 @@ class Namespaces:
                 told.seek(0)
                 self.pid = json.loads(told.read())["child-pid"]
                 self.pidfd = os.pidfd_open(self.pid)
+                self.number = NOBODY + self.pid  # of the notebook's user, when root grades; otherwise it is the grader
+                number, its_group = (self.number, self.number) if os.getuid() == 0 else (os.getuid(), os.getgid())
+                user.write(f"{USER}:x:{number}:{its_group}::/tmp:/bin/sh\n")
+                group.write(f"{USER}:x:{its_group}:\n")
             except (ValueError, OSError):
                 started = False
             if not started:
@@ -84,8 +106,8 @@ def compiled_filter():
         return file.read()
 
 
-def command(code):
-    """The arguments of `bwrap` that describe the sandbox."""
+def command(code, names):
+    """The arguments of `bwrap` that describe the sandbox; names: {file inside: the file that it is}."""
     package = code / "transform_lab"
     root = os.getuid() == 0
     # Not --die-with-parent: while it starts, it would be killed in two halves, of which one waits for the other for good.
@@ -107,6 +129,8 @@ def command(code):
     made = {*WRITABLE, COURSE / ASSIGNMENT}
     for path in filter(Path.exists, map(Path, ("/etc/ld.so.cache", "/etc/fonts"))):
         arguments += _bind(path, path, made)
+    for path, file in names.items():
+        arguments += _bind(file, Path(path), made)
     for folder in python_folders():
         if not folder.is_relative_to("/usr") and folder not in made:
             arguments += _bind(folder, folder, made)

@@ -73,9 +73,10 @@ def _load():
 
             rules = notebook_filter()
         executor = Executor()
-    for module in ("channel", "executor", "forkserver", "seccomp"):
-        sys.modules.pop(module, None)  # a student's helper may have that name
-    sys.path.remove(str(Path(__file__).parent))
+    here = Path(__file__).parent
+    for path in here.glob("*.py"):
+        sys.modules.pop(path.stem, None)  # a student's helper may have that name
+    sys.path.remove(str(here))
     return executor, rules
 
 
@@ -170,7 +171,6 @@ def _notebook(libc, executor, rules, connection):
             rules.load()
         os.environ.update(settings["environment"])
         os.chdir(settings["folder"])
-        sys.path.insert(0, settings["folder"])
         executor.start(settings["files"])
         grader.send({"ready": True})
         actions = {"prepare": executor.prepare, "run_cell": executor.run_cell}
@@ -178,7 +178,7 @@ def _notebook(libc, executor, rules, connection):
             request = grader.receive()
             nonce, arguments = request["nonce"], request["arguments"]
             if request["action"] == "snapshot":
-                grader = _snapshot(grader, nonce)
+                grader = _snapshot(grader, nonce, executor)
             elif request["action"] == "calls":
                 for number, reply in enumerate(executor.calls(*arguments)):
                     grader.send({"nonce": nonce, "number": number, **reply})
@@ -188,7 +188,7 @@ def _notebook(libc, executor, rules, connection):
         os._exit(0)
 
 
-def _snapshot(grader, nonce):
+def _snapshot(grader, nonce, executor):
     """Fork this process: the copy, which stays as it is until it is asked something, listens to a connection of its own.
 
     Returns the Channel to listen to, in either process.
@@ -200,6 +200,7 @@ def _snapshot(grader, nonce):
         copied = False  # the grader sees its end of the connection closed
     if copied:
         grader.connection.close()
+        executor.outputs.process = os.getpid()  # it keeps its own outputs
         grader = Channel(socket.socket(fileno=connection), most=None)
     else:
         os.close(connection)

@@ -24,19 +24,20 @@ from .. import ASSIGNMENT
 from ..untrusted import printable
 from .account import Account
 from .bounds import COURSE, PATIENCE, WALL, Allowance, Limits, NotStarted
-from .bubblewrap import Namespaces, copy_code
+from .bubblewrap import USER, Namespaces, copy_code
 from .channel import MOST_RECEIVED, Channel, Closed, Garbled, Late
 from .watch import UserWatch, Watch, waited
 
-NOBODY = 100_000  # when the grader is root, each notebook runs as a user of its own: this number and up
 GLANCE = 0.25  # seconds between two looks at what a sandbox uses
 MOST_OUTPUTS = 2_000  # that a notebook may make
 MOST_REPLIED = 1_000_000  # bytes that come of all calls of an exercise
 LINUX = sys.platform == "linux"
 CREDENTIALS = struct.Struct("3i")  # process, user, group: what the kernel tells of who sent something; see unix(7)
+SHELL = next(filter(os.path.exists, ("/bin/bash", "/bin/sh")))  # of `!commands`; what most people have
 ENVIRONMENT = {
     "OPENBLAS_NUM_THREADS": "1",
-    "PATH": "/usr/bin:/bin",
+    "PATH": os.pathsep.join([str(Path(sys.executable).parent), "/usr/bin", "/bin"]),
+    "SHELL": SHELL,
     "LANG": "C.UTF-8",
     "TRANSFORM_LAB_GRADING": "1",
     "MPLBACKEND": "module://matplotlib_inline.backend_inline",
@@ -51,7 +52,7 @@ class Ended(Exception):
         self.status, self.reason = status, reason
 
 
-@dataclass
+@dataclass(eq=False)
 class CellRun:
     """What running one cell gave, as nbformat outputs (dictionaries; not validated yet)."""
 
@@ -59,6 +60,13 @@ class CellRun:
     execution_count: int | None = None
     ended: bool = False  # the cell called exit() or quit()
     failed: bool = False  # it raised an error
+    changed: list = field(default_factory=list)  # the CellRuns above whose outputs it changed, by a display's handle
+    cell: object = None  # what it is the run of, for whoever asked for it
+
+    def change(self, position, output):
+        """Show another output in place of one; it is no longer there if there were too many."""
+        if position < len(self.outputs):
+            self.outputs[position] = dict(output)
 
 
 FORGED = "its process gave an answer that the grader's own code never gives"
@@ -340,16 +348,20 @@ class NotebookProcess(Asked):
         self.time = time_of_it
         self.namespaces = self.account = self.folder = None
         self.snapshots, self.outputs_left = [], MOST_OUTPUTS
+        self.runs = []  # a CellRun for each cell, in their order
         settings = {"files": sandbox.files, "isolated": sandbox.isolated}
         server = ForkServer.serving(sandbox.package)
         try:
             if sandbox.isolated == "user":
                 self.account = Account(server.code / sandbox.package.name)
                 settings |= {"limits": self.limits.resources(), "number": self.account.number}
-                settings |= {"folder": str(self.account.folder), "environment": {"HOME": str(self.account.home)}}
+                settings |= {
+                    "folder": str(self.account.folder),
+                    "environment": {"HOME": str(self.account.home), "USER": USER},
+                }
             elif sandbox.isolated:
                 self.namespaces = Namespaces(server.code)
-                settings |= {"limits": self.limits.resources(), "number": NOBODY + self.namespaces.pid}
+                settings |= {"limits": self.limits.resources(), "number": self.namespaces.number}
                 settings |= {"folder": str(COURSE / ASSIGNMENT), "environment": {"HOME": "/tmp"}}
             else:
                 # A folder of its own with the same files, which is tidy, but protects nothing.
@@ -416,10 +428,19 @@ class NotebookProcess(Asked):
             outputs = [dict(output) for output in reply["outputs"][: self.outputs_left]]
             self.outputs_left -= len(outputs)
             count = reply["execution_count"]
-            return CellRun(
-                outputs, count if type(count) is int else None, reply["ended"] is True, reply.get("failed") is True
+            changed = {
+                self.runs[cell]: self.runs[cell].change(at, output) for cell, at, output in reply.get("changed", [])
+            }
+            run = CellRun(
+                outputs,
+                count if type(count) is int else None,
+                reply["ended"] is True,
+                reply.get("failed") is True,
+                list(changed),
             )
-        except (KeyError, TypeError, ValueError) as error:
+            self.runs.append(run)
+            return run
+        except (LookupError, TypeError, ValueError) as error:
             raise self._ended("killed", FORGED) from error
 
     def calls(self, name, cases):

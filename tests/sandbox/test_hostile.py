@@ -388,7 +388,8 @@ def odd(source, honest=actions['run_cell']):
     outputs = [{'output_type': t, 'name': {}, 'text': [1], 'data': d, 'traceback': [{}], 'evalue': '\\ud800'}
                for t in ('stream', 'error', 'display_data', 'execute_result', [], None, 7)
                for d in ({}, [], {'text/html': ['<script>', 'alert(1)</script>'], 'text/plain': '\\udfff'}, {'x': 1})]
-    return {'outputs': outputs, 'execution_count': 10**4000, 'ended': 'no'}
+    changed = [[0, 0, output] for output in outputs]
+    return {'outputs': outputs, 'changed': changed, 'execution_count': 10**4000, 'ended': 'no'}
 actions['run_cell'] = odd""",
     ),
 ]
@@ -900,7 +901,7 @@ FLOODS = [
         for _ in range(300):
             os.write(1, b'x' * 10**6)
         """,
-        "File too large",
+        TOO_MUCH,
     ),
     harm("a command without end", "!yes hostile | head -c 300000000", "hostile"),
     harm(

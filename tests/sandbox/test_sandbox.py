@@ -445,6 +445,49 @@ def test_output_is_limited(sandbox):
     assert outputs[-1]["text"] == "[more output than the grader keeps]\n"
 
 
+@pytest.mark.parametrize("file", ["passwd", "group"])
+def test_the_only_user_there_is_the_notebooks(sandbox, file):
+    assert value(sandbox, f"[line.split(':')[0] for line in open('/etc/{file}')]") == "['student']"
+
+
+def test_a_handle_changes_what_a_cell_above_shows(sandbox):
+    with sandbox.notebook() as notebook:
+        above = notebook.run_cell("display(0); handle = display(1, display_id=True); 3")
+        for number in (4, 5):
+            assert notebook.run_cell(f"handle.update({number})").changed == [above]
+            assert [text for _, text in shown(above.outputs)] == ["0", str(number), "3"]
+        assert notebook.run_cell("1").changed == []
+
+
+@pytest.mark.parametrize("changed", ["7", "[7]", "[[7, 0, {}]]", "[[0, 0, 7]]", "[[0, '0', {}]]", "[[0, -2, {}]]"])
+def test_a_change_that_cannot_be_is_forged(sandbox, changed):
+    with sandbox.notebook() as notebook:
+        notebook.run_cell("1")
+        with pytest.raises(Ended, match="never gives"):
+            notebook.run_cell(f"{EXECUTOR}; executor.outputs.take = lambda: ([], {changed})")
+
+
+def test_a_progress_that_is_shown_again_and_again_is_not_cut(sandboxed):
+    """What counts is what stays; that it does so with bytes is in test_output_is_limited."""
+    cell = "handle = display('', display_id=True)\nfor n in range(90):\n    {show}\nprint('done')"
+    for show in ("handle.update(f'{n}' * 100_000)", "clear_output(); print('x' * 100_000)"):
+        with Sandbox(PACKAGE) as box:
+            outputs = run(box, "from IPython.display import clear_output", cell.format(show=show))
+        assert outputs[-1]["text"].endswith("done\n") and "more output than" not in json.dumps(outputs)
+
+
+def test_what_copies_of_a_process_print_is_seen(sandbox):
+    cell = "from multiprocessing import Pool\nwith Pool(1) as pool: x = pool.map(print, ['from a copy'])"
+    assert shown(run(sandbox, cell)) == [("stdout", "from a copy\n")]
+
+
+def test_what_a_called_function_prints_is_not_in_a_later_cell(sandbox):
+    with sandbox.notebook() as notebook:
+        notebook.run_cell("import os\ndef f(): print('seen'); os.system('echo seen')")
+        assert notebook.call("f", [], {}).outcome == "returned"
+        assert notebook.run_cell("pass").outputs == []
+
+
 def test_a_notebook_sees_no_other_notebooks_names(sandbox):
     with sandbox.notebook() as notebook:
         notebook.run_cell("secret = 1")
@@ -468,7 +511,7 @@ def test_what_a_notebook_leaves_running_ends_with_it(sandbox):
         str(ROOT / "source"),
         str(ROOT / "README.md"),
         "/grader/../autograder",
-        "/etc/passwd",
+        "/etc/shadow",
         "/proc/1/environ",
         str(Path.home() / ".bashrc"),
     ],
