@@ -112,7 +112,7 @@ class _Run:
     def __init__(self, intake, released, keys, public, verdicts, examples):
         self.intake, self.released, self.keys, self.public = intake, released, keys, public
         self.verdicts, self.examples = verdicts, examples  # to be filled in
-        self.aside: set[str] = set()  # exercises of which a snapshot could not be made, or was ended
+        self.aside: set[str] = set()  # exercises of which a snapshot could not be made, or would not work, or was ended
         self.skip: dict[int, FailedCell] = {}  # {position: the cell that brought the process down}
         self.failures: dict[int, FailedCell] = {}
 
@@ -141,6 +141,8 @@ class _Run:
                     break
                 elif name and at_once:
                     self._judge(name, process)
+                elif name and process.threaded:
+                    self.aside.add(name)
                 elif name:
                     snapshots[name] = process.snapshot()
             except Ended as ended:

@@ -36,6 +36,7 @@ CREDENTIALS = struct.Struct("3i")  # process, user, group: what the kernel tells
 SHELL = next(filter(os.path.exists, ("/bin/bash", "/bin/sh")))  # of `!commands`; what most people have
 ENVIRONMENT = {
     "OPENBLAS_NUM_THREADS": "1",
+    "NPROC": "1",  # JAX has as many threads as processors otherwise, in each of several pools
     "PATH": os.pathsep.join([str(Path(sys.executable).parent), "/usr/bin", "/bin"]),
     "SHELL": SHELL,
     "LANG": "C.UTF-8",
@@ -449,6 +450,14 @@ class NotebookProcess(Asked):
             yield from super().calls(name, cases)
         finally:
             self.allowance = self.time.cells
+
+    @property
+    def threaded(self):
+        """Whether it has other threads than the one that runs cells. A copy has none of them, and may wait for them for ever."""
+        try:
+            return len(os.listdir(f"/proc/{self.pid}/task")) > 1
+        except OSError:  # it is gone; or not Linux, where nobody can tell
+            return False
 
     def snapshot(self):
         """A Snapshot of the process as it is now; raises Ended as `run_cell`."""

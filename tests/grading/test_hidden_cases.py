@@ -45,6 +45,13 @@ WAYS = {
         "import threading; threading.Timer(0.05, lambda: open('/tmp/late', 'a').write(told(R))).start(); return False",
         "import time; time.sleep(0.3); import os; open('/tmp/late').read() if os.path.exists('/tmp/late') else ''",
     ),
+    "beside a thread": (
+        "seen.append(told(R)); return False",
+        "import threading, time\n"
+        "def fill():\n"
+        "    threading.Thread(target=time.sleep, args=(600,), daemon=True).start()\n"
+        "seen",
+    ),
     "no process left": (
         "seen.append(told(R)); return False",
         "import os\n"
@@ -118,6 +125,21 @@ def test_what_a_public_case_shows_as_well_is_said(course, hand_in, sandboxed):
     assert "ValueError: not today, in your line 2: `raise ValueError('not today')`" in text
     assert "raised an error: ValueError, in your line 2: `raise ValueError(repr(q1 * np.random.random()))`" in text
     assert "NameError: name 'nowhere' is not defined" in text
+
+
+def test_a_function_whose_threads_run_is_judged_beside_them(course, hand_in, sandboxed):
+    """A copy of its process would have none, and wait for them for ever. JAX, for one, has threads once it is used."""
+    notebook = nbformat.read(course.source / f"{ONE}.ipynb", as_version=4)
+    solve(
+        notebook,
+        "is_rotation",
+        "from concurrent.futures import ThreadPoolExecutor\npool = ThreadPoolExecutor(1)\n"
+        "def right(R):\n    return np.allclose(R.T @ R, np.eye(3), rtol=0, atol=1e-6) and np.linalg.det(R) > 0\n"
+        "def is_rotation(R):\n    return pool.submit(right, R).result()\nis_rotation(np.eye(3))",
+    )
+    hand_in(course, "ann", {ONE: notebook})
+    assert run(course, "grade", "--no-feedback")[0] == 0
+    assert sum(scores(course, "ann").values()) == points(ONE)
 
 
 @pytest.mark.parametrize("name", EXERCISES)
