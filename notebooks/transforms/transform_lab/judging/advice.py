@@ -51,8 +51,7 @@ ADVICE = tuple(
         (r"is not an attribute of \w+, whose fields are|takes its fields by position or by name", ""),
         (
             r"Invalid number of arguments, args should be (?P<fields>\[[^]]*\])",
-            r"A message takes all its fields, \g<fields>, or some of them by name, as in `Point(x=1.0)`; `Point(*p)` hands over "
-            "the numbers of an array one by one.",
+            r"A message takes its fields, \g<fields>, by name, one number for each: `x, y, z = p`, then `Point(x=x, y=y, z=z)`.",
         ),
         (r"^NotImplementedError", "Write this one from NumPy and tft, so that it works by itself."),
         # names

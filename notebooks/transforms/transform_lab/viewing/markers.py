@@ -26,7 +26,7 @@ UNINITIALIZED = "Uninitialized quaternion, assuming identity."
 UNNORMALIZED = "Unnormalized quaternion in marker message."
 BEYOND = "Colors go from 0 to 1 (not to 255); what is beyond is drawn as 0 or 1."
 NARROW = "A negative width (scale.x) is not drawn."
-LOW = "A negative text height (scale.z) makes RViz end."
+LOW = "A negative text height (scale.z) is not drawn."
 FAR = "It is too far away to be drawn"
 OURS = (BEYOND, NARROW, LOW, FAR)  # how what RViz does not say begins
 OPAQUE = 0.9998  # from here on RViz does not blend
@@ -73,7 +73,7 @@ def check_fields(marker):
     what = f"marker {marker_name(marker)}:"
     for field, (names, kind) in wanted.items():
         _need(getattr(marker, field), names, f"{what} {field}", kind)
-    _need_numbers(marker.pose.position, "xyz", f"{what} the pose's position", "a Point, such as Point(1, 2, 3)")
+    _need_numbers(marker.pose.position, "xyz", f"{what} the pose's position", "a Point, such as Point(x=1.0, y=2.0, z=3.0)")
     _need_numbers(marker.pose.orientation, "xyzw", f"{what} the pose's orientation", "a Quaternion")
     _need_numbers(marker.scale, "xyz", f"{what} scale", "a Vector3")
     _need_numbers(marker.color, "rgba", f"{what} color", "a ColorRGBA")

@@ -160,7 +160,7 @@ def gripper_node(gripper, transform):
 def xyz(message, what):
     """Return the x, y, z of a Point or Vector3 as an array; `what` starts the error messages."""
     if hasattr(message, "w") or not all(hasattr(message, name) for name in "xyz"):
-        raise TypeError(f"{what} must be a Point, such as Point(1, 2, 3); got {type(message).__name__}")
+        raise TypeError(f"{what} must be a Point, such as Point(x=1.0, y=2.0, z=3.0); got {type(message).__name__}")
     return within_reach(numbers([message.x, message.y, message.z], what, lengths=(3,)), what)
 
 
