@@ -325,3 +325,13 @@ def test_a_quaternion_has_four_numbers(values):
 def test_importing_tft_does_not_import_scipy():
     code = "import sys, transform_lab.tft; sys.exit('scipy' in sys.modules)"
     subprocess.run([sys.executable, "-c", code], check=True, env={"PYTHONPATH": ":".join(sys.path)})
+
+
+def test_what_is_not_here_is_said_with_what_is():
+    with pytest.raises(
+        AttributeError, match=r"tft\.quaternion_to_matrix is not here\. Did you mean .*quaternion_matrix.*\?"
+    ):
+        tft.quaternion_to_matrix
+    with pytest.raises(AttributeError, match=r"tft\.Arcball is not here\. There is compose_matrix, .*, vector_norm\."):
+        tft.Arcball
+    assert not hasattr(tft, "clip_matrix")

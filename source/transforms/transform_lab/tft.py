@@ -64,7 +64,11 @@ def _matrix(rotation):
 
 
 def __getattr__(name):
-    raise AttributeError(f"tft.{name} is not here. There is what the lab uses and its kin: {', '.join(__all__)}")
+    from difflib import get_close_matches
+
+    alike = get_close_matches(name, __all__)
+    there = f"Did you mean {' or '.join(alike)}?" if alike else f"There is {', '.join(__all__)}."
+    raise AttributeError(f"tft.{name} is not here. {there}")
 
 
 def _vector(value, what):

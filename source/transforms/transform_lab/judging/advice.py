@@ -46,6 +46,7 @@ ADVICE = tuple(
     for pattern, helps in (
         # what transform_lab says itself
         (r"must be a plain list of numbers|must be made of numbers|must be a 4x4 homogeneous|must be \d.* numbers; got", ""),
+        (r"AttributeError: (tft|rospy)\.\w+ is not here\. ", ""),
         (r"must have the bottom row|no rotation matrix in its upper left|a reflection in its upper left", ""),
         (r"contains NaN or infinity: |has a number that is too large|is no orientation|of zeros has no direction", ""),
         (r"is not an attribute of \w+, whose fields are|takes its fields by position or by name", ""),

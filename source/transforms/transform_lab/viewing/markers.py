@@ -73,7 +73,9 @@ def check_fields(marker):
     what = f"marker {marker_name(marker)}:"
     for field, (names, kind) in wanted.items():
         _need(getattr(marker, field), names, f"{what} {field}", kind)
-    _need_numbers(marker.pose.position, "xyz", f"{what} the pose's position", "a Point, such as Point(x=1.0, y=2.0, z=3.0)")
+    _need_numbers(
+        marker.pose.position, "xyz", f"{what} the pose's position", "a Point, such as Point(x=1.0, y=2.0, z=3.0)"
+    )
     _need_numbers(marker.pose.orientation, "xyzw", f"{what} the pose's orientation", "a Quaternion")
     _need_numbers(marker.scale, "xyz", f"{what} scale", "a Vector3")
     _need_numbers(marker.color, "rgba", f"{what} color", "a ColorRGBA")
