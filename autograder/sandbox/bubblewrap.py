@@ -21,14 +21,8 @@ from .bounds import COURSE, FOLDER, PATIENCE, WRITABLE, NotStarted
 HERE = Path(__file__).parent
 NOBODY = 100_000  # when the grader is root, each notebook runs as a user of its own: this number and up
 USER = "student"  # what that user is called
-CODE = (
-    "channel.py",
-    "executor.py",
-    "forkserver.py",
-    "outputs.py",
-    "seccomp.py",
-    "shell.py",
-)  # what runs in a notebook's process
+# What runs in a notebook's process
+CODE = ("channel.py", "executor.py", "forkserver.py", "outputs.py", "seccomp.py", "shell.py")
 
 
 class Namespaces:

@@ -21,10 +21,8 @@ class Outputs:
         self.items, self.held, self.left, self.clear_next = [], 0, MOST_OUTPUT, False
         self.cell, self.shown = 0, {}  # its number; {(cell, position): output} of those above that have a display id
         self.changed = set()  # places of these that were changed since they were last taken
-        self.captured, self.capturing = (
-            {},
-            [],
-        )  # {Comm of an ipywidgets.Output: its outputs}, and those that take what comes
+        self.captured = {}  # {Comm of an ipywidgets.Output: its outputs}
+        self.capturing = []  # those of them that take what comes
         self.renewed = {}  # of the first, those that were told of less than they hold
         self.raw, self.read, self.process = {}, {}, None
 
