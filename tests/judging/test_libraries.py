@@ -4,7 +4,7 @@ Here are those of SciPy and of Python itself, and others by their names and prot
 """
 
 from array import array
-from collections import UserList, deque
+from collections import UserList, deque, namedtuple
 from decimal import Decimal
 from fractions import Fraction
 
@@ -74,6 +74,29 @@ class Rows:
 @pytest.mark.parametrize("rows", [TURN.tolist(), np.eye(4).tolist(), [[1, 2, 3]], [[1], [2], [3]]])
 def test_a_matrix_has_the_shape_of_its_lists(rows):
     assert encode(Rows(rows)) == encode(np.array(rows))
+
+
+class Vector:
+    """As games have it: three numbers with names, and in a row."""
+
+    def __init__(self, x, y, z):
+        self.x, self.y, self.z = x, y, z
+
+    def __len__(self):
+        return 3
+
+    def __getitem__(self, index):
+        return [self.x, self.y, self.z][index]
+
+
+Named = namedtuple("Named", "x y z")
+
+
+@pytest.mark.parametrize("kind", [Vector, Named])
+def test_three_numbers_with_names_are_a_row_of_them_and_in_a_field_a_point(kind):
+    np.testing.assert_array_equal(np.array(decode(encode(kind(1.0, 2.0, 3.0)))), [1, 2, 3])
+    assert decode(encode(Pose(position=kind(1.0, 2.0, 3.0)))).position == Point(1, 2, 3)
+    assert decode(encode(Point(1.0, 2.0, 3.0))) == Point(1, 2, 3)
 
 
 REAL = [

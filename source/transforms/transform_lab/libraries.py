@@ -11,7 +11,7 @@ A quaternion is none of these: which of its numbers is w, only the names of its 
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping
 from functools import cache
 from numbers import Integral
 
@@ -52,17 +52,26 @@ def is_matrix(value):
     return _giver(type(value)) is not None
 
 
+def is_array(value):
+    """Whether NumPy takes it for an array, or takes it apart as it does a list: a range, SymPy's Array, a vector of a game's."""
+    kind = type(value)
+    if hasattr(kind, "__array__"):
+        return True
+    if isinstance(value, (str, bytes, Mapping)) or hasattr(
+        kind, "matrix"
+    ):  # a quaternion of spatialmath's is a list, too
+        return False
+    return all(hasattr(kind, method) for method in ("__len__", "__getitem__")) and len(value) <= MOST
+
+
 def taken(value):
     """The array, float, int or bool that `value` stands for; None for what has none, whatever it raises when it is asked."""
     try:
         if is_matrix(value):
             return _matrix(value)
-        if hasattr(value, "__array__") or _is_sequence(value):
-            return _array(_as_array(value))
-        return _number(value)
-    except (
-        Exception
-    ):  # its own: of SymPy's symbols, of tensors with gradients or elsewhere, of rows that differ in length, …
+        return _array(_as_array(value)) if is_array(value) else _number(value)
+    except Exception:
+        # Its own: of SymPy's symbols, of tensors with gradients or elsewhere, of rows that differ in length, …
         return None
 
 
@@ -90,13 +99,6 @@ def _as_array(value):
     """As NumPy takes it; what makes lists of itself has its rows there, and may be numbered through without (mpmath)."""
     flat = hasattr(value, "tolist") and not hasattr(value, "__array__")
     return np.asarray(value.tolist() if flat else value)
-
-
-def _is_sequence(value):
-    """Whether NumPy takes it apart as it does a list: a range, an array of Python's, SymPy's Array."""
-    if not (isinstance(value, (Sequence, memoryview)) or hasattr(value, "tolist")):
-        return False
-    return not hasattr(value, "matrix") and hasattr(value, "__getitem__") and len(value) <= MOST
 
 
 def _array(array):

@@ -43,11 +43,11 @@ class NotPlain(ValueError):
     """What was received is not plain data of a permitted size."""
 
 
-def encode(value: object, depth: int = 0, room: list[int] | None = None, calls: tuple = libraries.CALLS) -> Plain:
+def encode(value: object, depth: int = 0, room: list[int] | None = None, in_field: bool = False) -> Plain:
     """Plain data for `value`, of bounded size; what has no plain form becomes `{"other": type name}`.
 
     room: how many more things may be in the outermost list, as its one item; None outside of lists
-    calls: what may be said of an object of another library, see transform_lab.libraries.described
+    in_field: whether it is in the field of a message, where three numbers with names are a Point whatever else they are
     """
     if type(value) is float:  # most of all there is
         return _number(value)
@@ -64,7 +64,7 @@ def encode(value: object, depth: int = 0, room: list[int] | None = None, calls: 
         return _array(value)
     if depth >= DEEPEST or isinstance(value, type):  # a class has its messages' fields, too
         return _other(value)
-    if (name := _message(value)) is not None:
+    if (name := _message(value)) is not None and (in_field or name != "Point" or not libraries.is_array(value)):
         return {"message": name, "fields": {field: _field(value, field, depth, room) for field in MESSAGES[name]}}
     if isinstance(value, (list, tuple)) and not libraries.is_matrix(value):  # JAX's Rotation is a tuple, too
         if len(value) > LONGEST_LIST:
@@ -76,13 +76,13 @@ def encode(value: object, depth: int = 0, room: list[int] | None = None, calls: 
         except _Full:
             return _other(value)
     found = libraries.taken(value)
-    return _other(value, calls) if found is None else encode(found, depth, room)
+    return _other(value, in_field) if found is None else encode(found, depth, room)
 
 
 def _field(message, field, depth, room):
     """A field of a message; another library's rotation is no Quaternion, and is called what it is."""
-    value, calls = getattr(message, field), libraries.TO_QUATERNION
-    return _other(value, calls) if libraries.is_matrix(value) else encode(value, depth + 1, room, calls)
+    value = getattr(message, field)
+    return _other(value, True) if libraries.is_matrix(value) else encode(value, depth + 1, room, True)
 
 
 def _things(value, depth, room):
@@ -181,7 +181,8 @@ def _number(value):
     return value if math.isfinite(value) else {"float": repr(value)}
 
 
-def _other(value, calls=libraries.CALLS):
+def _other(value, in_field=False):
+    calls = libraries.TO_QUATERNION if in_field else libraries.CALLS
     name = f"class {value.__name__}" if isinstance(value, type) else libraries.described(value, calls)
     return {"other": name[:LONGEST_TEXT]}
 
