@@ -106,13 +106,14 @@ class _Run:
     """A notebook that is run from its start, once, or again without the cells that brought its process down.
 
     What a function is asked with must not be seen in the notebook's outputs: others would have it from the pages. So all
-    cells are run first, and each exercise is judged in a snapshot of the process, taken where its test cell stands.
+    cells are run first, and each exercise is judged in a snapshot of the process, taken where its test cell stands. A process
+    with threads has no snapshots that work: there the function is kept as it is, and judged after the last cell.
     """
 
     def __init__(self, intake, released, keys, public, verdicts, examples):
         self.intake, self.released, self.keys, self.public = intake, released, keys, public
         self.verdicts, self.examples = verdicts, examples  # to be filled in
-        self.aside: set[str] = set()  # exercises of which a snapshot could not be made, or would not work, or was ended
+        self.aside: set[str] = set()  # exercises of which a snapshot could not be made, or was ended
         self.skip: dict[int, FailedCell] = {}  # {position: the cell that brought the process down}
         self.failures: dict[int, FailedCell] = {}
 
@@ -124,7 +125,7 @@ class _Run:
         process, whose outputs are then not kept.
         """
         at_once = set(self.released.points) <= self.verdicts.keys() | self.aside
-        self.failures, snapshots = {**(self.failures if at_once else {}), **self.skip}, {}
+        self.failures, snapshots, kept = {**(self.failures if at_once else {}), **self.skip}, {}, []
         try:
             process.prepare(_imports(self.released))
         except Ended as ended:
@@ -142,7 +143,8 @@ class _Run:
                 elif name and at_once:
                     self._judge(name, process)
                 elif name and process.threaded:
-                    self.aside.add(name)
+                    process.keep(name)
+                    kept.append(name)
                 elif name:
                     snapshots[name] = process.snapshot()
             except Ended as ended:
@@ -158,9 +160,13 @@ class _Run:
                 return
         asked = {name: taken for name, taken in snapshots.items() if taken.meets()}
         self.aside |= snapshots.keys() - asked.keys()
+        asked |= dict.fromkeys(kept, process)
         # All public cases before the first hidden one: what they give is shown.
         answers = {name: public_example.answers(name, self.public.get(name), taken) for name, taken in asked.items()}
         for name, taken in asked.items():
+            if taken is process and process.gone:  # ended by another function
+                self.aside.add(name)
+                continue
             self._judge(name, taken, answers[name])
             if self.verdicts[name].status == "killed":
                 # Whether its function has ended it, or something else here, shows where it is judged at once.

@@ -37,8 +37,10 @@ class Namespaces:
             tempfile.TemporaryFile() as arguments,
             tempfile.TemporaryFile() as rules,
             tempfile.TemporaryFile() as told,
-            tempfile.NamedTemporaryFile("w", prefix="user-") as user,
-            tempfile.NamedTemporaryFile("w", prefix="group-") as group,
+            tempfile.NamedTemporaryFile(
+                "w", dir=code, prefix="user-"
+            ) as user,  # gone with the code, if the grader is killed
+            tempfile.NamedTemporaryFile("w", dir=code, prefix="group-") as group,
         ):
             names = {"/etc/passwd": user.name, "/etc/group": group.name}
             arguments.write(b"\0".join(os.fsencode(argument) for argument in command(code, names)))

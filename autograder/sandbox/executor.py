@@ -54,6 +54,7 @@ class Executor:
         self.libc = ctypes.CDLL(None)
         self.context = contextvars.copy_context()  # of all cells and calls: NumPy and decimal keep their settings there
         self.running = False
+        self.kept = {}  # {name: function}, of those that are called as they once were
 
     def start(self, files):
         """The rest, in the notebook's own process and folder.
@@ -109,13 +110,18 @@ class Executor:
             "failed": failed,
         }
 
+    def keep(self, name):
+        """Have `calls` call the function that has this name now."""
+        self.kept[name] = self.shell.user_ns.get(name)
+        return {}
+
     def calls(self, name, cases):
         """Call a function of the notebook with the plain arguments of each case, [args, kwargs]; nobody sees what it prints.
 
         Yields a transform_lab.judging.verdict.Reply to each as a dictionary, with whether its arguments were "changed" in
         their stead; the first that neither returned nor raised is the last.
         """
-        function = self.shell.user_ns.get(name)
+        function = self.kept.get(name, self.shell.user_ns.get(name))
         for args, kwargs in cases:
             reply = self._call(function, args, kwargs)
             yield reply

@@ -173,7 +173,7 @@ def _notebook(libc, executor, rules, connection):
         os.chdir(settings["folder"])
         executor.start(settings["files"])
         grader.send({"ready": True})
-        actions = {"prepare": executor.prepare, "run_cell": executor.run_cell}
+        actions = {"prepare": executor.prepare, "run_cell": executor.run_cell, "keep": executor.keep}
         while True:
             request = grader.receive()
             nonce, arguments = request["nonce"], request["arguments"]

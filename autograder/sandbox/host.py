@@ -173,7 +173,7 @@ class Asked:
         self.channel, self.limits, self.allowance = Channel(connection, most), limits, allowance
         self.gone = False  # whether it had to be stopped, or died
         self.pid = self.handle = self.watch = None
-        self.glanced, self.waited = time.monotonic(), 0.0
+        self.glanced, self.waited, self.threads = time.monotonic(), 0.0, {}
 
     def close(self):
         self.allowance.use(-self._waited())
@@ -278,9 +278,14 @@ class Asked:
                     raise
 
     def _waited(self):
-        """Seconds in which it could have run, but others had the processor; as last seen, once it has ended."""
+        """Seconds in which it could have run, but others had the processor: at each look, those of the thread that waited most,
+        for the others may wait for that one.
+        """
         if self.watch and self.pid:
-            self.waited = max(self.waited, waited(self.pid))
+            before, self.threads = self.threads, waited(self.pid)
+            self.waited += max(
+                (seconds - before.get(thread, 0.0) for thread, seconds in self.threads.items()), default=0.0
+            )
         return self.waited
 
     def _excess(self):
@@ -421,6 +426,10 @@ class NotebookProcess(Asked):
     def prepare(self, source):
         """Run lines of the grader's own before the first cell; raises Ended as `run_cell`."""
         self._request("prepare", [source], self.limits.cell)
+
+    def keep(self, name):
+        """Have `calls` call the function of this name as it is now, whatever the name stands for later; raises Ended."""
+        self._request("keep", [name], self.limits.call)
 
     def run_cell(self, source):
         """Run a cell; raises Ended when its process had to be stopped or died."""

@@ -22,11 +22,14 @@ SHARED_DEVICE = b" /dev/zero (deleted)\n"  # what is mapped of it may be a page 
 
 
 def waited(process):
-    """Seconds in which the process of that number could have run, but others had the processor."""
-    try:
-        return int(Path(f"/proc/{process}/schedstat").read_text().split()[1]) * 1e-9
-    except (OSError, ValueError, IndexError):
-        return 0.0  # it has ended, or this kernel does not count
+    """{thread: seconds in which it could have run, but others had the processor}, of the process of that number."""
+    found = {}
+    for path in Path(f"/proc/{process}/task").glob("*/schedstat"):
+        try:
+            found[path.parent.name] = int(path.read_text().split()[1]) * 1e-9
+        except (OSError, ValueError, IndexError):
+            continue  # it has ended, or this kernel does not count
+    return found
 
 
 class Watch:

@@ -137,6 +137,7 @@ def test_a_function_whose_threads_run_is_judged_beside_them(course, hand_in, san
         "def right(R):\n    return np.allclose(R.T @ R, np.eye(3), rtol=0, atol=1e-6) and np.linalg.det(R) > 0\n"
         "def is_rotation(R):\n    return pool.submit(right, R).result()\nis_rotation(np.eye(3))",
     )
+    notebook.cells.append(nbformat.v4.new_code_cell("is_rotation = None"))  # what stood at its test cell counts
     hand_in(course, "ann", {ONE: notebook})
     assert run(course, "grade", "--no-feedback")[0] == 0
     assert sum(scores(course, "ann").values()) == points(ONE)
