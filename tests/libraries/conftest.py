@@ -11,6 +11,9 @@ from support import PATIENCE, ROOT, lacking
 
 HERE = Path(__file__).parent
 UV = Path(sys.executable).with_name("uv")
+SLOW_TO_COMPILE = (
+    "import jax.numpy, jax.scipy.spatial.transform, jaxlie, pydrake.math, pinocchio, spatialmath, sympy, trimesh"
+)
 
 
 class Libraries:
@@ -44,6 +47,8 @@ def libraries(slow, made_once):
             [UV, "venv", "--quiet", "--clear", "--python", sys.executable, folder],
             [UV, "pip", "install", "--python", folder, "-r", ROOT / "environment.txt", "-r", HERE / "requirements.txt"],
             [UV, "pip", "install", "--python", folder, "--no-deps", "-r", HERE / "ros2.txt"],
+            # Once, and not in each sandbox, which cannot keep it; -I, for then it does not heed an environment that says not to.
+            [folder / "bin/python", "-I", "-c", SLOW_TO_COMPILE],
         ]
         for command in installing:
             step = subprocess.run(command, capture_output=True, text=True)
