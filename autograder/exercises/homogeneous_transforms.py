@@ -680,7 +680,7 @@ POSE_TO_TRANSFORM = Exercise(
             "integer-truncation",
             lambda pose: np.trunc(pose_to_transform(pose)),
             *TRUNCATED,
-            varies=lambda pose: ("rotation",) if whole_but_for_rounding(matrix(pose)[:3, :3]) else (),
+            varies=lambda pose: ("rotation", "translation") if whole_but_for_rounding(matrix(pose)[:3, :3]) else (),
         ),
         Misconception(
             "elementwise-product",

@@ -400,13 +400,19 @@ def test_there_are_enough_misconceptions():
 # --- what the lab publishes -----------------------------------------------------------------------------------------
 
 
+def flat(pose):
+    p, q = pose.position, pose.orientation
+    return [p.x, p.y, p.z, q.x, q.y, q.z, q.w]
+
+
 def test_pre_grasp_of_the_lab():
     object_pose = Pose(Point(0.6, -0.1, 0.7), Quaternion(0, 0, 0.38268343, 0.92387953))
     answer = EXERCISES["pre_grasp"].reference(object_pose)
     position, q = answer.position, answer.orientation
     assert [position.x, position.y, position.z] == pytest.approx([0.529289321708, -0.170710677946, 0.7], abs=1e-10)
     assert [q.x, q.y, q.z, q.w] == pytest.approx([0.0, 0.0, 0.382683431234, 0.92387953298], abs=1e-8)
-    assert object_pose in [case.args[0] for case in EXERCISES["pre_grasp"].drawn(PUBLIC_SEED)]
+    asked = [flat(case.args[0]) for case in EXERCISES["pre_grasp"].drawn(PUBLIC_SEED)]
+    assert any(np.allclose(flat(object_pose), pose, rtol=0, atol=1e-8) for pose in asked)
 
 
 def test_example_1_of_the_lab():
