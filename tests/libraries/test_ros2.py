@@ -1,12 +1,10 @@
 """The notebooks' code runs on a robot with ROS 2, too, when only its import lines change: fields by name, and floats."""
 
-import json
 import re
 
-import nbformat
 import pytest
-from support import ASKED, NAMES, ROOT, key_of
-from transform_lab.judging.verdict import Reply, examine
+from ros.solved import cells, judged_there, solutions
+from support import ASKED, NAMES, key_of
 
 MESSAGES = {"Point", "Pose", "PoseStamped", "Quaternion"}
 IMPORT = re.compile(r"from transform_lab import (.+)")
@@ -35,26 +33,13 @@ def for_ros2(source):
     return IMPORT.sub(lines, source)
 
 
-def cells(notebook):
-    path = ROOT / f"source/transforms/{notebook}.ipynb"
-    return [cell for cell in nbformat.read(path, 4).cells if cell.cell_type == "code"]
-
-
 @pytest.fixture(scope="module")
 def found(libraries):
-    solutions = {}
-    for notebook in ASKED:
-        first, *others = cells(notebook)
-        for cell in others:
-            name, _, kind = cell.metadata.get("nbgrader", {}).get("grade_id", "").partition("-")
-            if kind == "solution":
-                cases = [[case["args"], case["kwargs"]] for case in key_of(name)["cases"]]
-                solutions[name] = {"cells": [for_ros2(first.source), for_ros2(cell.source)], "cases": cases}
     # Not `check`, which hands over messages of integers, too: there are none in ROS 2.
     notebooks = {
         name: [for_ros2(cell.source) for cell in cells(name) if not cell.source.startswith("check(")] for name in ASKED
     }
-    asked = {"code": list(SAYS), "notebooks": notebooks, "solutions": solutions}
+    asked = {"code": list(SAYS), "notebooks": notebooks, "solutions": solutions(for_ros2)}
     return libraries.ask("on_ros2.py", asked, ROS_PYTHON_CHECK_FIELDS="1")
 
 
@@ -70,12 +55,10 @@ def test_cells(found, notebook):
 @pytest.mark.parametrize("name", NAMES)
 def test_solutions(found, name):
     """Our judge reads what came of ROS 2's messages, and gives full points."""
-    key = key_of(name)
-    replies = {
-        json.dumps([case["args"], case["kwargs"]]): Reply(
-            "returned", answer, [case["args"], case["kwargs"]] if kept else None
-        )
-        for case, (answer, kept) in zip(key["cases"], found["solutions"][name], strict=True)
-    }
-    verdict = examine(name, key, lambda args, kwargs: replies[json.dumps([args, kwargs])])
+    cases, answered = key_of(name)["cases"], found["solutions"][name]
+    answers = [
+        (answer, [case["args"], case["kwargs"]] if kept else None)
+        for case, (answer, kept) in zip(cases, answered, strict=True)
+    ]
+    verdict = judged_there(name, answers)
     assert (verdict.status, verdict.credit, verdict.says) == ("graded", 1, "")

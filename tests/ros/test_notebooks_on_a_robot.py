@@ -1,15 +1,13 @@
 """The notebooks' code runs on a robot when only its import lines change, and tells the same there."""
 
-import json
 import re
 
-import nbformat
 import pytest
 import transform_lab
 from ros.alike import differences
 from ros.robot import PROGRAMS
-from support import ASKED, NAMES, ROOT, key_of
-from transform_lab.judging.verdict import Reply, examine
+from ros.solved import cells, judged_there, solutions
+from support import ASKED, NAMES, ROOT
 
 SOURCE = ROOT / "source/transforms"
 ON_A_ROBOT = {
@@ -18,10 +16,6 @@ ON_A_ROBOT = {
     "tft": "import tf.transformations as {}",
 }
 IMPORT = re.compile(r"from transform_lab import (.+)")
-
-
-def cells(notebook):
-    return [cell for cell in nbformat.read(SOURCE / f"{notebook}.ipynb", 4).cells if cell.cell_type == "code"]
 
 
 def for_a_robot(source):
@@ -68,24 +62,11 @@ def test_cells(ros, here, notebook):
 @pytest.fixture(scope="module")
 def answers(ros):
     """What the notebooks' solutions answer on the robot: {exercise: [(answer, arguments afterwards)]}."""
-    asked = {}
-    for notebook in ASKED:
-        first, *others = cells(notebook)
-        for cell in others:
-            name, _, kind = cell.metadata.get("nbgrader", {}).get("grade_id", "").partition("-")
-            if kind == "solution":
-                cases = [[case["args"], case["kwargs"]] for case in key_of(name)["cases"]]
-                asked[name] = {"cells": [for_a_robot(first.source), for_a_robot(cell.source)], "cases": cases}
-    return ros.ask("solutions.py", asked, SOURCE / "transform_lab")
+    return ros.ask("solutions.py", solutions(for_a_robot), SOURCE / "transform_lab")
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_solutions(answers, name):
     """Our judge reads what came of ROS's messages, in the place of ours, and gives full points."""
-    key = key_of(name)
-    replies = {
-        json.dumps([case["args"], case["kwargs"]]): Reply("returned", answer, after)
-        for case, (answer, after) in zip(key["cases"], answers[name], strict=True)
-    }
-    verdict = examine(name, key, lambda args, kwargs: replies[json.dumps([args, kwargs])])
+    verdict = judged_there(name, answers[name])
     assert (verdict.status, verdict.credit, verdict.says) == ("graded", 1, "")
