@@ -114,7 +114,7 @@ class Writer:
         self._write_files(graded)
 
     def export(self, path):
-        """Write the assignment's grades as `nbgrader export` does, but so that a name stays in its cell, and is not run."""
+        """Write the grades as `nbgrader export` does, but in one order, and so that a name stays in its cell, and is not run."""
         assignment = self.gradebook.find_assignment(ASSIGNMENT)
         done = {submission.student_id: submission for submission in self.gradebook.assignment_submissions(ASSIGNMENT)}
         rows = [EXPORTED]
