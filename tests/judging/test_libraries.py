@@ -50,7 +50,7 @@ def test_a_rotation_or_transform_is_its_matrix_whatever_else_it_is(library, name
 )
 def test_it_is_no_quaternion_of_a_pose_and_told_how_to_get_one(library, name, call):
     answer = made(library, name)
-    setattr(type(answer), call.partition("(")[0], None)
+    setattr(type(answer), call.partition("(")[0], lambda self: None)
     orientation = encode(Pose(Point(), answer))["fields"]["orientation"]
     assert orientation == {"other": f"{name} (.{call} makes an array of it)"}
 
@@ -97,6 +97,32 @@ def test_three_numbers_with_names_are_a_row_of_them_and_in_a_field_a_point(kind)
     np.testing.assert_array_equal(np.array(decode(encode(kind(1.0, 2.0, 3.0)))), [1, 2, 3])
     assert decode(encode(Pose(position=kind(1.0, 2.0, 3.0)))).position == Point(1, 2, 3)
     assert decode(encode(Point(1.0, 2.0, 3.0))) == Point(1, 2, 3)
+
+
+class Measured(np.ndarray):
+    """A number with a unit, as astropy has it: its own item."""
+
+    def item(self):
+        return self
+
+
+def test_a_number_with_a_unit_is_the_number():
+    assert encode(np.array(1.5).view(Measured)) == 1.5
+
+
+@pytest.mark.parametrize("call", ["matrix", "to_homogeneous", "rotation"])
+def test_a_transform_whose_x_is_a_method_is_no_point(call):
+    methods = dict.fromkeys(("x", "y", "z", call), lambda self: 1.0)
+    assert encode(type("Pose3", (), methods)()) == {"other": f"Pose3 (.{call}() makes an array of it)"}
+
+
+def test_a_call_that_is_named_is_a_method():
+    assert encode(type("Coordinates", (), {"rotation": property(lambda self: TURN)})()) == {"other": "Coordinates"}
+
+
+def test_one_of_several_has_no_length_and_is_called_by_its_name():
+    several = type("Several", (), {"__len__": no_length, "__getitem__": no_length})
+    assert encode(several()) == {"other": "Several"}
 
 
 REAL = [

@@ -31,11 +31,13 @@ MATRICES = {
     ("pydrake", "RotationMatrix"): "matrix",
     ("pydrake", "RigidTransform"): "GetAsMatrix4",
     ("pydrake", "Isometry3"): "matrix",
+    ("gtsam", "Rot3"): "matrix",
+    ("gtsam", "Pose3"): "matrix",
 }
 # What makes an array of an object that is not taken by itself; the first that it has is named
 CALLS = (
     "as_matrix()", "GetAsMatrix4()", "detach().cpu().numpy()", "to_numpy()", "toarray()", "homogeneous_matrix()",
-    "ToRotationMatrix()", "R", "SE3().A", "rotation()", "matrix()",
+    "to_homogeneous()", "ToRotationMatrix()", "R", "SE3().A", "matrix()", "rotation()",
 )  # fmt: skip
 TO_QUATERNION = (
     "as_quat()",
@@ -52,16 +54,25 @@ def is_matrix(value):
     return _giver(type(value)) is not None
 
 
+def is_transform(value):
+    """Whether it is a matrix, or has methods x, y, z and for its matrix, as other libraries' transforms do: it is no Point."""
+    kind = type(value)
+    return is_matrix(value) or callable(getattr(kind, "x", None)) and _call(kind, CALLS) is not None
+
+
 def is_array(value):
     """Whether NumPy takes it for an array, or takes it apart as it does a list: a range, SymPy's Array, a vector of a game's."""
     kind = type(value)
     if hasattr(kind, "__array__"):
         return True
-    if isinstance(value, (str, bytes, Mapping)) or hasattr(
-        kind, "matrix"
-    ):  # a quaternion of spatialmath's is a list, too
+    if isinstance(value, (str, bytes, Mapping)) or not hasattr(kind, "__len__") or not hasattr(kind, "__getitem__"):
         return False
-    return all(hasattr(kind, method) for method in ("__len__", "__getitem__")) and len(value) <= MOST
+    if hasattr(kind, "matrix"):  # a quaternion of spatialmath's is a list, too
+        return False
+    try:
+        return len(value) <= MOST
+    except TypeError:  # one vector, of a class of several
+        return False
 
 
 def taken(value):
@@ -78,8 +89,19 @@ def taken(value):
 def described(value, calls=CALLS):
     """The name of an object's type; with the call that makes an array of it, where it has one of these."""
     kind = type(value)
-    call = next((call for call in calls if hasattr(kind, re.split(r"\W", call)[0])), None)
+    call = _call(kind, calls)
     return f"{kind.__name__} (.{call} makes an array of it)" if call else kind.__name__
+
+
+@cache
+def _call(kind, calls):
+    """The first of `calls` that objects of this type have; what is called there is a method, what is not is none."""
+
+    def has(call):
+        name = re.split(r"\W", call)[0]
+        return hasattr(kind, name) and callable(getattr(kind, name)) == call.startswith(f"{name}(")
+
+    return next(filter(has, calls), None)
 
 
 @cache

@@ -104,7 +104,7 @@ def _take(room, things):
 
 def _message(value):
     """The name of the message that has the fields of `value`, or None."""
-    if libraries.is_matrix(value):  # spatialmath's SE3 has x, y and z
+    if libraries.is_transform(value):  # spatialmath's SE3 has x, y and z
         return None
     for name, fields in MESSAGES.items():
         for field in fields:
@@ -195,7 +195,7 @@ def _array(value):
     if value.dtype.kind not in "biuf":
         return {"other": f"array of {value.dtype}"[:LONGEST_TEXT]}
     if value.ndim == 0:
-        return encode(value.item())
+        return encode(np.asarray(value).item())  # a length of astropy's is its own item, for ever
     numbers = np.asarray(value).ravel()
     if numbers.dtype.kind in "iu" and np.any(np.abs(numbers.astype(np.float64)) > LARGEST_INTEGER):
         return {"other": "array of integers out of range"}
