@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from IPython.core.interactiveshell import InteractiveShell
 from IPython.utils.capture import capture_output
+from scipy.spatial.transform import Rotation
 from support import ASKED, judged, key_of
 from transform_lab import Point, Pose, Quaternion, check, once_done, tft
 from transform_lab.check import CheckFailed
@@ -93,6 +94,16 @@ def test_small_readable_numbers(said):
             "a list instead of a number in position.x",
         ),
         (Pose(Point({1}, 0, 0), Quaternion(0, 0, 0, 1)), "wrong-type", "a set instead of a number in position.x"),
+        (
+            Pose(Point([].copy, 0, 0), Quaternion(0, 0, 0, 1)),
+            "wrong-type",
+            "a method instead of a number in position.x: call it, as in x().",
+        ),
+        (
+            Pose(Point(), Rotation.identity()),
+            "wrong-type",
+            "\n    orientation  a Rotation (.as_quat() makes an array of it)\n",
+        ),
         ([[[0] * 100] * 100] * 100, "wrong-type", "a list instead of a Pose"),
         (np.zeros((0, 3)), "wrong-type", "an array of shape (0, 3)"),
         (Pose(Point(float("nan"), 0, 0), Quaternion(0, 0, 0, 1)), "not-finite", "NaN"),

@@ -49,7 +49,9 @@ def row(value):
 
 def _field(value):
     """A field of a Pose; what is no message is said to be what it is."""
-    return row(value) if hasattr(value, "x") else f"{type_in_words(value)}: {row(value)}"
+    if hasattr(value, "x"):
+        return row(value)
+    return type_in_words(value) if isinstance(value, codec.Other) else f"{type_in_words(value)}: {row(value)}"
 
 
 def _short(number):

@@ -83,7 +83,7 @@ def _components(message, name, letters):
         if isinstance(value, np.ndarray) and value.size == 1:
             values[index] = value = value.item()
         if isinstance(value, codec.Other) and value.type_name in METHODS:
-            raise Unfit("wrong-type", f"a method instead of a number in {name}.{letter}: call it, as in {letter}(),")
+            raise Unfit("wrong-type", f"a method instead of a number in {name}.{letter}: call it, as in {letter}()")
         if not isinstance(value, (bool, int, float)):
             raise Unfit("wrong-type", f"{type_in_words(value)} instead of a number in {name}.{letter}")
     return np.array(values, dtype=np.float64)
