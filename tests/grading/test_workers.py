@@ -25,9 +25,9 @@ def work(folder, item):
         while True:
             pass
     if item == "much":
-        kept = []
-        while True:
-            kept.append(b"x" * 10_000_000)
+        kept = b"x" * 400_000_000
+        while kept:  # waiting takes no processor time
+            time.sleep(0.1)
     if item == "gone":
         os._exit(1)
     if item == "gone once":
