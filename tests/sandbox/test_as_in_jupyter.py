@@ -4,9 +4,11 @@ import json
 import os
 import re
 import shutil
+from contextlib import suppress
 from importlib.resources import files
 from itertools import chain
 from pathlib import Path
+from queue import Empty
 
 import nbformat
 import pytest
@@ -42,6 +44,22 @@ def in_jupyter(slow, tmp_path_factory):
     """in_jupyter(sources): [(outputs, number)] of these cells, which ipykernel runs and nbclient keeps, made comparable."""
     from nbclient import NotebookClient
 
+    class Client(NotebookClient):
+        """nbclient does not notice a reply that comes while it tells an ipywidgets.Output what it holds, until it looks again."""
+
+        async def async_start_new_kernel_client(self):
+            kernel = await super().async_start_new_kernel_client()
+            channel, get_msg = kernel.shell_channel, kernel.shell_channel.get_msg
+
+            async def look_every_second(timeout):
+                for _ in range(int(timeout)):
+                    with suppress(Empty):
+                        return await get_msg(timeout=1)
+                raise Empty
+
+            channel.get_msg = look_every_second
+            return kernel
+
     def run(sources):
         home, folder = tmp_path_factory.mktemp("home"), tmp_path_factory.mktemp("of") / "course/transforms"
         shutil.copytree(PACKAGE, folder / PACKAGE.name, ignore=shutil.ignore_patterns("key.json", "__pycache__"))
@@ -53,9 +71,7 @@ def in_jupyter(slow, tmp_path_factory):
         environment = {name: value for name, value in os.environ.items() if not name.startswith(ours)}
         environment |= {"HOME": str(home), "TRANSFORM_LAB_GRADING": "1", "LANG": "C.UTF-8", "SHELL": SHELL}
         environment["PYTHONDONTWRITEBYTECODE"] = "1"
-        client = NotebookClient(
-            notebook, timeout=PATIENCE, allow_errors=True, resources={"metadata": {"path": str(folder)}}
-        )
+        client = Client(notebook, timeout=PATIENCE, allow_errors=True, resources={"metadata": {"path": str(folder)}})
         client.execute(env=environment)
         return [(comparable(cell.outputs, folder, home), cell.execution_count) for cell in notebook.cells]
 
