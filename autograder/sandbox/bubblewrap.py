@@ -37,9 +37,8 @@ class Namespaces:
             tempfile.TemporaryFile() as arguments,
             tempfile.TemporaryFile() as rules,
             tempfile.TemporaryFile() as told,
-            tempfile.NamedTemporaryFile(
-                "w", dir=code, prefix="user-"
-            ) as user,  # gone with the code, if the grader is killed
+            # Beside the code, and gone with it if the grader is killed
+            tempfile.NamedTemporaryFile("w", dir=code, prefix="user-") as user,
             tempfile.NamedTemporaryFile("w", dir=code, prefix="group-") as group,
         ):
             names = {"/etc/passwd": user.name, "/etc/group": group.name}

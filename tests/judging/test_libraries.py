@@ -120,9 +120,10 @@ def test_a_call_that_is_named_is_a_method():
     assert encode(type("Coordinates", (), {"rotation": property(lambda self: TURN)})()) == {"other": "Coordinates"}
 
 
-def test_one_of_several_has_no_length_and_is_called_by_its_name():
-    several = type("Several", (), {"__len__": no_length, "__getitem__": no_length})
-    assert encode(several()) == {"other": "Several"}
+def test_one_vector_of_a_class_of_several_has_no_length_and_is_a_point():
+    several = {"__len__": no_length, "__getitem__": no_length}
+    assert encode(type("Several", (), several)()) == {"other": "Several"}
+    assert decode(encode(type("Several", (), {**several, "x": 1.0, "y": 2.0, "z": 3.0})())) == Point(1, 2, 3)
 
 
 REAL = [

@@ -271,18 +271,20 @@ def test_the_number_of_files_is_limited(sandboxed):
     assert killed(Limits(files=2_000), cell) == "it used more than 2000 files"
 
 
-def test_time_without_a_processor_does_not_count(sandbox):
+@pytest.mark.parametrize("called", ["f", "in_a_thread"])
+def test_time_without_a_processor_does_not_count(sandboxed, called):
     """Beside a notebook that keeps its processor busy, an honest function gets its whole time."""
     processor = {min(os.sched_getaffinity(0))}
     hog = FORKED.format(count=8, work="os.setsid()\n        while True: pass", after="")
-    honest = "import time\ndef f():\n    while time.process_time() < start + 0.7:\n        pass\n    return 'done'"
+    honest = "import time\ndef f():\n    while time.process_time() < start + 0.7:\n        pass\n    return 'done'\n"
+    honest += "from multiprocessing.pool import ThreadPool\ndef in_a_thread():\n    return ThreadPool(1).apply(f)\n"
     with Sandbox(PACKAGE, limits=Limits(cpu=1000.0)) as busy, busy.notebook() as hogs:
         os.sched_setaffinity(hogs.pid, processor)
         hogs.run_cell(hog)
         with Sandbox(PACKAGE, limits=Limits(call=1.2)) as box, box.notebook() as notebook:
             os.sched_setaffinity(notebook.pid, processor)
-            notebook.run_cell(f"{honest}\nstart = time.process_time()")
-            assert notebook.call("f", [], {}).value == "done"
+            notebook.run_cell(f"{honest}start = time.process_time()")
+            assert notebook.call(called, [], {}).value == "done"
 
 
 @pytest.mark.parametrize(

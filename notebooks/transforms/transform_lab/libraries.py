@@ -39,13 +39,8 @@ CALLS = (
     "as_matrix()", "GetAsMatrix4()", "detach().cpu().numpy()", "to_numpy()", "toarray()", "homogeneous_matrix()",
     "to_homogeneous()", "ToRotationMatrix()", "R", "SE3().A", "matrix()", "rotation()",
 )  # fmt: skip
-TO_QUATERNION = (
-    "as_quat()",
-    "as_quaternion_xyzw()",
-    "ToQuaternion().wxyz()",
-    "vec_xyzs",
-    *CALLS,
-)  # in the field of a message
+# And in the field of a message
+TO_QUATERNION = ("as_quat()", "as_quaternion_xyzw()", "ToQuaternion().wxyz()", "vec_xyzs", *CALLS)
 FIELDS = "xyzw"  # of a quaternion
 
 
@@ -57,7 +52,7 @@ def is_matrix(value):
 def is_transform(value):
     """Whether it is a matrix, or has methods x, y, z and for its matrix, as other libraries' transforms do: it is no Point."""
     kind = type(value)
-    return is_matrix(value) or callable(getattr(kind, "x", None)) and _call(kind, CALLS) is not None
+    return is_matrix(value) or (callable(getattr(kind, "x", None)) and _call(kind, CALLS) is not None)
 
 
 def is_array(value):
