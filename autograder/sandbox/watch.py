@@ -24,9 +24,9 @@ SHARED_DEVICE = b" /dev/zero (deleted)\n"  # what is mapped of it may be a page 
 def waited(process):
     """{thread: seconds in which it could have run, but others had the processor}, of the process of that number."""
     found = {}
-    for path in Path(f"/proc/{process}/task").glob("*/schedstat"):
+    for task in _entries(Path(f"/proc/{process}/task")):
         try:
-            found[path.parent.name] = int(path.read_text().split()[1]) * 1e-9
+            found[task.name] = int((task / "schedstat").read_text().split()[1]) * 1e-9
         except (OSError, ValueError, IndexError):
             continue  # it has ended, or this kernel does not count
     return found

@@ -2,6 +2,8 @@
 
 import math
 import mmap
+import subprocess
+import sys
 
 import pytest
 from hypothesis import given
@@ -61,6 +63,29 @@ def test_pipes_and_sockets_are_told_apart(tmp_path):
     first = process(tmp_path / "1", {1: {}, 2: {"fd": open_files}})
     second = process(tmp_path / "2", {2: {"fd": {9: "socket:[6]", 10: "socket:[8]"}}})
     assert watch._buffers(first) | watch._buffers(second) == {"pipe:[5]", "socket:[6]", "socket:[8]"}
+
+
+ENDING = """
+import os, signal, time
+from pathlib import Path
+from autograder.sandbox import watch
+
+signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # who ends is gone at once
+for look in (watch.waited, watch._memory, watch._memory_at_most, watch._buffers):
+    for _ in range(200):
+        number = os.fork()
+        if number == 0:
+            time.sleep(0.001)
+            os._exit(0)
+        folder = Path("/proc", str(number))
+        while folder.exists():
+            look(number if look is watch.waited else folder)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="what processes use is read from /proc, which is Linux's")
+def test_a_process_may_end_while_it_is_looked_at():
+    subprocess.run([sys.executable, "-c", ENDING], check=True)
 
 
 def stat(own, children, started):
