@@ -28,6 +28,7 @@ from .failure import Failure
 from .judge import Row, judge, rows
 from .public_example import public_cases
 from .records import RECORD, missing, told
+from .writing import text_of
 
 if TYPE_CHECKING:
     from .marks import Marks
@@ -165,7 +166,7 @@ def _written(intake):
     """A graded notebook as text, and its Marks."""
     from .marks import marks  # here, because it imports nbgrader, which takes longer than to check one student's files
 
-    return nbformat.v4.writes(intake.notebook) + "\n", marks(intake.notebook)
+    return text_of(intake.notebook) + "\n", marks(intake.notebook)
 
 
 def _grading(submission, run):

@@ -74,7 +74,7 @@ def judge(
         while set(verdicts) != set(released.points) and runs <= MOST_RESTARTS and not over:
             if runs:
                 time.cells.use(RESTART)
-            with sandbox.notebook(time) as process:
+            with sandbox.notebook(time, _given(released)) as process:
                 run.through(process)
                 over = process.over
             runs += 1
@@ -206,6 +206,13 @@ def _imports(released):
     """The import statements of a released notebook's cells."""
     found = (python_text.imports(cell.source) for cell in released.notebook.cells if cell.cell_type == "code")
     return "\n".join(dict.fromkeys(filter(None, found)))
+
+
+@cache
+def _given(released):
+    """The texts of a released notebook's cells that students run, most of them as they are."""
+    cells = (cell for cell in released.notebook.cells if cell.cell_type == "code")
+    return frozenset(cell.source for cell in cells if _exercise(cell, released) is None)
 
 
 def _solution(intake, released, exercise):

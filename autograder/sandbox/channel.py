@@ -9,8 +9,10 @@ import select
 import struct
 import time
 
+EXPECT, FORK = b"E", b"F"  # what a fork server is asked: to get ready for cells, to start a notebook's process
 LENGTH = struct.Struct(">I")
 MOST_RECEIVED = 4_000_000  # bytes in the life of a channel; twice what a notebook may output
+CHUNK = 1 << 16  # bytes that are read at once
 MOST_FORGED = 100  # frames that nobody asked for, in the life of a channel
 
 
@@ -47,16 +49,16 @@ class Channel:
     def receive(self, deadline=None):
         """Read one frame, until `deadline` (time.monotonic) at most. What came before a Late is not lost."""
         self._fill(LENGTH.size, deadline)
-        size = LENGTH.size + LENGTH.unpack(self.buffer[: LENGTH.size])[0]
+        size = LENGTH.size + LENGTH.unpack_from(self.buffer)[0]
         if self.most is not None and size > self.most:
             raise Garbled("more than the grader takes")
         self._fill(size, deadline)
-        frame = bytes(self.buffer[LENGTH.size : size])
+        frame = self.buffer[LENGTH.size : size]
         del self.buffer[:size]
         if self.most is not None:
             self.most -= size
         try:
-            return json.loads(frame)
+            return json.loads(frame.decode())
         except (ValueError, RecursionError) as error:
             raise Garbled("not JSON") from error
 
@@ -75,8 +77,10 @@ class Channel:
                 left = max(0.0, deadline - time.monotonic())  # what has come in time counts, even if it is read late
                 if not select.select([self.connection], [], [], left)[0]:
                     raise Late
+            # At the notebook's end no more than there has to be: a descriptor may follow.
+            most = CHUNK if self.most is not None else min(size - len(self.buffer), CHUNK)
             try:
-                chunk = self.connection.recv(min(size - len(self.buffer), 1 << 16))  # no more: a descriptor may follow
+                chunk = self.connection.recv(most)
             except OSError as error:
                 raise Closed from error
             if not chunk:

@@ -1,6 +1,7 @@
 """The grader's side of a sandbox: start it, run a notebook's cells in it, call the notebook's functions."""
 
 import base64
+import json
 import os
 import secrets
 import select
@@ -25,7 +26,7 @@ from ..untrusted import printable
 from .account import Account
 from .bounds import COURSE, PATIENCE, WALL, Allowance, Limits, NotStarted
 from .bubblewrap import USER, Namespaces, copy_code
-from .channel import MOST_RECEIVED, Channel, Closed, Garbled, Late
+from .channel import EXPECT, FORK, MOST_RECEIVED, Channel, Closed, Garbled, Late
 from .watch import UserWatch, Watch, waited
 
 GLANCE = 0.25  # seconds between two looks at what a sandbox uses
@@ -106,6 +107,16 @@ class ForkServer:
             start_new_session=True,  # Ctrl-C is for the grader
         )
         inside.close()
+        self.expected = frozenset()
+
+    def expect(self, cells):
+        """Have it get ready for cells of these texts (a frozenset), which most notebooks have."""
+        if new := cells - self.expected:
+            with tempfile.TemporaryFile() as file:
+                file.write(json.dumps(sorted(new)).encode())
+                file.seek(0)
+                socket.send_fds(self.control, [EXPECT], [file.fileno()])
+            self.expected |= new
 
     def alive(self):
         try:
@@ -118,7 +129,7 @@ class ForkServer:
     def fork(self, connection, namespaces=None):
         """Start a notebook's process that speaks over `connection` (the far end of a socket), inside `namespaces`."""
         handles = [connection.fileno(), *([namespaces.pidfd] if namespaces else [])]
-        socket.send_fds(self.control, [b"F"], handles)
+        socket.send_fds(self.control, [FORK], handles)
 
     def said(self):
         """The end of what it wrote: why it failed, or why a notebook's process did before it ran anything."""
@@ -150,8 +161,9 @@ class Sandbox:
         """The Time of one notebook, however often it is run, out of the submission's."""
         return Time(*(Allowance(self.limits.notebook, self.allowance) for _ in Time._fields))
 
-    def notebook(self, time=None):
-        """A NotebookProcess in a new sandbox."""
+    def notebook(self, time=None, cells=frozenset()):
+        """A NotebookProcess in a new sandbox; cells: the texts of those that are likely to be run in it."""
+        ForkServer.serving(self.package).expect(cells)
         return NotebookProcess(self, time or self.time())
 
 
@@ -213,17 +225,18 @@ class Asked:
     def _reply(self, message, case):
         """The Reply that a message is: of the arguments it tells whether they are as they were, and no more is kept."""
         outcome, error, printed = message.get("outcome"), message.get("error", ""), message.get("printed", "")
-        try:
-            codec.decode(message.get("value"))
-            known = outcome in ("returned", "raised", "not done", "undefined", "timeout")
-            if not known or not isinstance(error, str) or not isinstance(printed, str):
-                raise codec.NotPlain("an unknown outcome")
-        except codec.NotPlain:
-            raise self._ended("killed", FORGED) from None
         arguments = [case["args"], case["kwargs"]] if message.get("changed") is False else None
         same = message.get("same_object")
         same = same if same in (ARGUMENT, EARLIER_ANSWER) else ""
-        return Reply(outcome, message.get("value"), arguments, printable(error[:300]), printed[:300], same)
+        try:
+            known = outcome in ("returned", "raised", "not done", "undefined", "timeout")
+            if not known or not isinstance(error, str) or not isinstance(printed, str):
+                raise codec.NotPlain("an unknown outcome")
+            reply = Reply(outcome, message.get("value"), arguments, printable(error[:300]), printed[:300], same)
+            reply.answer  # is plain data
+            return reply
+        except codec.NotPlain:
+            raise self._ended("killed", FORGED) from None
 
     def _request(self, action, arguments, seconds):
         return self._answer(self._ask(action, arguments), seconds)

@@ -1,12 +1,15 @@
 """IPython set up as ipykernel sets it up, but for what only a kernel with a browser can do. Lives inside the sandbox."""
 
+import ast
+import copy
 import inspect
 import itertools
 import os
 import tempfile
+import warnings
 import zlib
 from functools import partial
-from types import TracebackType
+from types import CodeType, TracebackType
 
 from IPython.core import page
 from IPython.core.autocall import ZMQExitAutocall
@@ -62,6 +65,11 @@ class ZMQShellDisplayHook(DisplayHook):
     outputs = Any()
     showing = False
 
+    def quiet(self):
+        cells = self.shell.history_manager.input_hist_parsed
+        known = self.shell.compile.quiet.get(cells[-1]) if cells else None
+        return super().quiet() if known is None else known
+
     def start_displayhook(self):
         self.showing = True
 
@@ -79,11 +87,52 @@ class ZMQShellDisplayHook(DisplayHook):
 
 
 class XCachingCompiler(CachingCompiler):
-    """Names cells as files that are not there: warnings, syntax errors and IPython's choice of lines depend on it."""
+    """Names cells as files that are not there: warnings, syntax errors and IPython's choice of lines depend on it.
+
+    Of cells that are expected it keeps what was made of them.
+    """
+
+    def __init__(self):
+        super().__init__()
+        self.trees = {}  # {text of a cell: (flags, its syntax tree)}
+        self.codes = {}  # {(a statement's id in one of the trees, mode, flags): its code}
+        self.quiet = {}  # {text of a cell: whether it ends in a semicolon}
+
+    def expect(self, cell):
+        """Parse and compile a cell (as transformed) that will be run, as IPython will; one that gives a warning is left."""
+        tree, flags = super().ast_parse(cell), self.flags
+        codes = {}
+        with self.extra_flags(ast.PyCF_ALLOW_TOP_LEVEL_AWAIT):
+            for statement in tree.body:
+                shown = statement is tree.body[-1] and isinstance(statement, ast.Expr)
+                mode, whole = ("single", ast.Interactive) if shown else ("exec", partial(ast.Module, type_ignores=[]))
+                code = super().__call__(whole([statement]), "", mode)
+                codes[id(statement), mode, self.flags] = code
+        if self.flags == flags:  # it imports nothing from __future__
+            self.trees[cell], self.quiet[cell] = (flags, tree), DisplayHook.semicolon_at_end_of_expression(cell)
+            self.codes |= codes
+        self.flags = flags
+
+    def ast_parse(self, source, filename="<unknown>", symbol="exec"):
+        flags, tree = self.trees.get(source, (None, None))
+        if (flags, symbol) != (self.flags, "exec"):
+            return super().ast_parse(source, filename, symbol)
+        return ast.Module(list(tree.body), tree.type_ignores)
+
+    def __call__(self, source, filename, symbol, **kwargs):
+        body = source.body if isinstance(source, (ast.Module, ast.Interactive)) else ()
+        code = self.codes.get((id(body[0]), symbol, self.flags)) if len(body) == 1 else None
+        return _in_file(code, filename) if code else super().__call__(source, filename, symbol, **kwargs)
 
     def get_code_name(self, raw_code, code, number):
         number = zlib.crc32(raw_code.encode(errors="replace"))
         return f"{tempfile.gettempdir()}/ipykernel_{os.getpid()}/{number}.py"
+
+
+def _in_file(code, name):
+    """A code object as if it had been compiled in a file of this name."""
+    constants = (_in_file(one, name) if isinstance(one, CodeType) else one for one in code.co_consts)
+    return code.replace(co_filename=name, co_consts=tuple(constants))
 
 
 @magics_class
@@ -143,10 +192,42 @@ class ZMQInteractiveShell(InteractiveShell):
     keepkernel_on_exit = None
     ended = False
     display_failed = False  # the value of the cell's last line could not be shown
+    transformers = None  # those that IPython comes with
+
+    def __init__(self, **kwargs):
+        self.expected = {}  # {text of a cell: what IPython's transformers make of it}
+        super().__init__(**kwargs)
 
     @default("exiter")
     def _default_exiter(self):
         return ZMQExitAutocall(self)
+
+    def expect(self, cells):
+        """Make of these cells (texts) what IPython will make of them, once for all notebooks."""
+        self.transformers = self._transformers()
+        for cell in cells:
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                try:
+                    transformed = self.transform_cell(cell)
+                    self.compile.expect(transformed)
+                    if len(transformed.splitlines()) > 1:  # a single line may call what is defined by then
+                        self.expected[cell] = transformed
+                except (SyntaxError, ValueError, Warning):
+                    continue  # it will be shown when it is run
+
+    def transform_cell(self, raw_cell):
+        if raw_cell in self.expected and self._transformers() == self.transformers:
+            return self.expected[raw_cell]
+        return super().transform_cell(raw_cell)
+
+    def _transformers(self):
+        manager = self.input_transformer_manager
+        lists = manager.cleanup_transforms, manager.line_transforms, manager.token_transformers
+        return [*map(list, lists), list(self.input_transformers_post)]
+
+    def transform_ast(self, node):
+        return super().transform_ast(copy.deepcopy(node) if self.ast_transformers else node)
 
     def begin(self):
         """What depends on the folder that the notebook runs in."""

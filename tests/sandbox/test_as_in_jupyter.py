@@ -19,7 +19,7 @@ from support import PATIENCE, ROOT
 from autograder.course import Course
 from autograder.grading.grade import grade_submission, grading_run
 from autograder.intake.submission import Submission
-from autograder.sandbox import Ended, Limits, Sandbox
+from autograder.sandbox import Ended, ForkServer, Limits, Sandbox
 from autograder.sandbox.host import SHELL
 
 PACKAGE = ROOT / "source/transforms/transform_lab"
@@ -82,8 +82,8 @@ def in_jupyter(slow, tmp_path_factory):
 def in_sandbox(sandboxed):
     """The same of the sandbox."""
 
-    def run(sources):
-        with Sandbox(PACKAGE, HANDED_IN, PATIENT) as box, box.notebook() as process:
+    def run(sources, expected=frozenset()):
+        with Sandbox(PACKAGE, HANDED_IN, PATIENT) as box, box.notebook(cells=expected) as process:
             for source in sources:
                 if source.strip():  # nbclient passes over the others, and so does the grader
                     try:
@@ -178,6 +178,61 @@ def test_cells_show_what_they_show_in_jupyter(in_jupyter, in_sandbox, name):
         if (there == here) is not (why is None):
             wrong.append({"cell": source, "differs": why, "in Jupyter": there, "in the sandbox": here})
     assert not wrong, json.dumps(wrong, indent=1)
+
+
+@pytest.mark.parametrize("name", NOTEBOOKS)
+def test_expected_cells_show_the_same(in_sandbox, monkeypatch, name):
+    """What was made of a cell before is what IPython makes of it when it is run."""
+    sources = [source for source, _ in cells_of(NOTEBOOKS[name])]
+    monkeypatch.setattr(ForkServer, "current", None)  # one that expects nothing
+    as_they_come = in_sandbox(sources)
+    server = ForkServer.current
+    made = in_sandbox(sources, frozenset(sources))
+    assert ForkServer.current is server and server.expected == frozenset(sources)
+    for source, before, now in zip(sources, as_they_come, made, strict=True):
+        assert now == before, source
+
+
+CHANGES = {
+    "a transformer of lines": """
+get_ipython().input_transformers_cleanup.append(lambda lines: [line.replace('1', '7') for line in lines])""",
+    "a transformer of text": """
+get_ipython().input_transformers_post.append(lambda lines: [line.replace('1', '7') for line in lines])""",
+    "a transformer of the tree": """
+import ast
+class Seven(ast.NodeTransformer):
+    def visit_Constant(self, node):
+        return ast.Constant(7) if node.value == 1 else node
+get_ipython().ast_transformers.append(Seven())""",
+    "all values shown": "get_ipython().ast_node_interactivity = 'all'",
+    "assigned values shown": "get_ipython().ast_node_interactivity = 'last_expr_or_assign'",
+    "warnings as errors": "import warnings; warnings.simplefilter('error')",
+    "annotations of the future": "from __future__ import annotations",
+    "no await at the top": "get_ipython().autoawait = False",
+}
+AFTER = [
+    "n = 1",
+    "n",
+    "n;",
+    "n\nn",
+    "def f(x: absent = 1): return x\nf()",
+    "f()",
+    "'\\d'",
+    "n is 1",
+    "import asyncio\nawait asyncio.sleep(0, 1)",
+    "1 +",
+    "%time",
+    "?n",
+    "f.__annotations__",
+]
+
+
+@pytest.mark.parametrize("change", CHANGES.values(), ids=CHANGES)
+def test_expected_cells_heed_what_a_cell_above_has_changed(in_sandbox, monkeypatch, change):
+    monkeypatch.setattr(ForkServer, "current", None)
+    as_they_come = in_sandbox([change, *AFTER])
+    assert in_sandbox([change, *AFTER], frozenset(AFTER)) == as_they_come
+    assert as_they_come != in_sandbox(["0", *AFTER])
 
 
 def test_a_graded_notebook_shows_what_a_cell_below_changed(sandboxed):

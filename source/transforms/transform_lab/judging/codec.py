@@ -37,6 +37,7 @@ MESSAGES = {
     "Point": ("x", "y", "z"),
     "Header": ("seq", "stamp", "frame_id"),
 }
+OURS = {getattr(messages, name): name for name in MESSAGES}
 
 
 class NotPlain(ValueError):
@@ -82,6 +83,8 @@ def encode(value: object, depth: int = 0, room: list[int] | None = None, in_fiel
 def _field(message, field, depth, room):
     """A field of a message; another library's rotation is no Quaternion, and is called what it is."""
     value = getattr(message, field)
+    if type(value) is float:
+        return _number(value)
     return _other(value, True) if libraries.is_matrix(value) else encode(value, depth + 1, room, True)
 
 
@@ -104,6 +107,8 @@ def _take(room, things):
 
 def _message(value):
     """The name of the message that has the fields of `value`, or None."""
+    if (ours := OURS.get(type(value))) and all(hasattr(value, field) for field in MESSAGES[ours]):
+        return ours
     if libraries.is_transform(value):  # spatialmath's SE3 has x, y and z
         return None
     for name, fields in MESSAGES.items():
@@ -200,7 +205,7 @@ def _array(value):
     if numbers.dtype.kind in "iu" and np.any(np.abs(numbers.astype(np.float64)) > LARGEST_INTEGER):
         return {"other": "array of integers out of range"}
     flat = numbers.tolist()
-    if numbers.dtype not in (np.float64, np.float32) or not np.isfinite(numbers).all():
+    if numbers.dtype.char not in "df" or not math.isfinite(sum(flat)):
         flat = [encode(item) for item in flat]
     return {"array": flat, "shape": list(value.shape)}
 
@@ -212,12 +217,14 @@ def _decode_array(flat, shape):
         raise NotPlain("an array with an impossible shape")
     if len(flat) > LARGEST_ARRAY or math.prod(shape) != len(flat):
         raise NotPlain("an array too large, or not of its shape")
-    numbers = [item if type(item) is float else decode(item, DEEPEST) for item in flat]
-    if not all(isinstance(number, (bool, int, float)) for number in numbers):
-        raise NotPlain("an array of something else than numbers")
-    kinds = set(map(type, numbers))
+    kinds = set(map(type, flat))
+    if kinds != {float}:
+        flat = [decode(item, DEEPEST) for item in flat]
+        kinds = set(map(type, flat))
+        if not kinds <= {bool, int, float}:
+            raise NotPlain("an array of something else than numbers")
     dtype = {bool: bool, int: np.int64}.get(*kinds, np.float64) if len(kinds) == 1 else np.float64
-    return np.array(numbers, dtype=dtype).reshape(shape)
+    return np.array(flat, dtype=dtype).reshape(shape)
 
 
 def _decode_message(name, fields, depth):
