@@ -93,12 +93,9 @@ class Namespaces:
 @cache
 def compiled_filter():
     """The filter of system calls, as the kernel takes it: bytes."""
-    from .seccomp import notebook_filter  # only here: on a machine without its library, `probe` says so
+    from .seccomp import compiled  # only here: on a machine without its library, `probe` says so
 
-    with tempfile.TemporaryFile() as file:
-        notebook_filter().export_bpf(file)
-        file.seek(0)
-        return file.read()
+    return compiled()
 
 
 def command(code, names):

@@ -19,6 +19,7 @@ import socket
 import sys
 import tempfile
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 
 from channel import EXPECT, Channel, Closed
@@ -38,7 +39,7 @@ def main():
     libc = ctypes.CDLL(None, use_errno=True)
     own = os.open("/proc/self/ns/pid", os.O_RDONLY) if sys.platform == "linux" else None
     try:
-        executor, rules = _load()
+        executor, put_on_filter = _load()
         signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for what is forked
         ready_for_figures = False
         while True:
@@ -55,12 +56,12 @@ def main():
                 gc.freeze()
                 continue
             if len(descriptors) == 1:
-                _start(libc, executor, rules, *descriptors)
+                _start(libc, executor, put_on_filter, *descriptors)
             elif os.getuid() == 0:
-                _start(libc, executor, rules, *descriptors)
+                _start(libc, executor, put_on_filter, *descriptors)
                 _enter(libc, own, CLONE_NEWPID)
             elif os.fork() == 0:  # who has no right to come back does not leave
-                _guard(libc, executor, rules, *descriptors)
+                _guard(libc, executor, put_on_filter, *descriptors)
             for descriptor in descriptors:
                 os.close(descriptor)
     finally:
@@ -74,17 +75,17 @@ def _load():
         import scipy.spatial.transform  # noqa: F401
         from executor import Executor
 
-        rules = None
+        put_on_filter = None
         if sys.platform == "linux":
-            from seccomp import notebook_filter
+            from seccomp import compiled, put_on
 
-            rules = notebook_filter()
+            put_on_filter = partial(put_on, program=compiled())
         executor = Executor()
     here = Path(__file__).parent
     for path in here.glob("*.py"):
         sys.modules.pop(path.stem, None)  # a student's helper may have that name
     sys.path.remove(str(here))
-    return executor, rules
+    return executor, put_on_filter
 
 
 def _load_figures():
@@ -107,7 +108,7 @@ def _home():
         gc.freeze()  # what is loaded stays shared with the processes that are forked
 
 
-def _guard(libc, executor, rules, connection, sandbox):
+def _guard(libc, executor, put_on_filter, connection, sandbox):
     """Enter the sandbox (in one step: the first would take away the right to the others) and start the notebook there."""
     _die_with_parent(libc)
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
@@ -117,14 +118,14 @@ def _guard(libc, executor, rules, connection, sandbox):
         except OSError as error:
             os.write(connection, f"E{error}".encode())
             return
-        _start(libc, executor, rules, connection)
+        _start(libc, executor, put_on_filter, connection)
         os.closerange(0, os.sysconf("SC_OPEN_MAX"))
         os.wait()
     finally:
         os._exit(0)
 
 
-def _start(libc, executor, rules, connection, sandbox=None):
+def _start(libc, executor, put_on_filter, connection, sandbox=None):
     """Fork the notebook's process, into the sandbox if there is one, and tell the grader which it is."""
     grader = socket.socket(fileno=os.dup(connection))
     try:
@@ -135,7 +136,7 @@ def _start(libc, executor, rules, connection, sandbox=None):
             try:
                 if sandbox is not None:
                     _enter(libc, sandbox, NAMESPACES)
-                _notebook(libc, executor, rules, grader)
+                _notebook(libc, executor, put_on_filter, grader)
             finally:
                 os._exit(1)  # whatever was raised: this process goes no other way
         handle = [os.pidfd_open(child)] if hasattr(os, "pidfd_open") else []
@@ -159,7 +160,7 @@ def _die_with_parent(libc):
         libc.prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
-def _notebook(libc, executor, rules, connection):
+def _notebook(libc, executor, put_on_filter, connection):
     """The life of a notebook's process: answer requests until the grader hangs up."""
     _die_with_parent(libc)
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
@@ -175,7 +176,7 @@ def _notebook(libc, executor, rules, connection):
             libc.prctl(PR_SET_THP_DISABLE, 1, 0, 0, 0)  # one that is unmapped in part stays, and counts for nobody
             _become_nobody(libc, settings["number"])
             _die_with_parent(libc)  # another user's process no longer would
-            rules.load()
+            put_on_filter(libc)
         os.environ.update(settings["environment"])
         os.chdir(settings["folder"])
         executor.start(settings["files"])

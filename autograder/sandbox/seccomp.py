@@ -4,10 +4,13 @@ A notebook needs files, threads, pipes and sockets of its own; whatever makes me
 the sandbox, or is a door into the kernel that no notebook uses, is refused with an error that Python can raise.
 """
 
+import ctypes
 import errno
 import fcntl
 import mmap
+import os
 import socket
+import tempfile
 
 import pyseccomp
 
@@ -36,13 +39,36 @@ CLOSE_RANGE_UNSHARE = 2
 F_SETPIPE_SZ, F_OFD_SETLK, F_OFD_SETLKW = 1031, 37, 38  # fcntl
 LOCKS = F_OFD_SETLK, F_OFD_SETLKW, fcntl.F_SETLK, fcntl.F_SETLKW  # of ranges: a file has any number of them
 SHARED_ANONYMOUS, MAP_HUGETLB = mmap.MAP_SHARED | mmap.MAP_ANONYMOUS, 0x40000
-PR_SET_THP_DISABLE = 41
+PR_SET_SECCOMP, PR_SET_NO_NEW_PRIVS, PR_SET_THP_DISABLE = 22, 38, 41
+SECCOMP_MODE_FILTER, INSTRUCTION = 2, 8  # bytes of an instruction
 SOCKET_TYPE = 0xF  # in what socket(2) is given, the rest is flags
 INT = 0xFFFFFFFF  # what the kernel sees of an argument of this type: a comparison with all bits would be passed by the others
 
 
-def notebook_filter():
-    """A pyseccomp.SyscallFilter; its `load()` puts it on the calling process for good, and on all that it starts."""
+def compiled():
+    """The filter as the kernel takes it: bytes."""
+    with tempfile.TemporaryFile() as file:
+        _rules().export_bpf(file)
+        file.seek(0)
+        return file.read()
+
+
+class _Program(ctypes.Structure):
+    """struct sock_fprog of seccomp(2)."""
+
+    _fields_ = [("length", ctypes.c_ushort), ("instructions", ctypes.c_char_p)]
+
+
+def put_on(libc, program):
+    """Put a compiled filter on the calling process for good, and on all that it starts; raises OSError."""
+    given = _Program(len(program) // INSTRUCTION, program)
+    if libc.prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) or libc.prctl(
+        PR_SET_SECCOMP, SECCOMP_MODE_FILTER, ctypes.byref(given), 0, 0
+    ):
+        raise OSError(ctypes.get_errno(), f"the filter of system calls: {os.strerror(ctypes.get_errno())}")
+
+
+def _rules():
     Arg, refuse = pyseccomp.Arg, pyseccomp.ERRNO(errno.EPERM)
     rules = pyseccomp.SyscallFilter(pyseccomp.ALLOW)
 
