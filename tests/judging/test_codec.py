@@ -1,10 +1,12 @@
 """Values cross to the judge as plain data, and nothing else crosses."""
 
 import json
+import math
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 from transform_lab import Point, Pose, PoseStamped, Quaternion
 from transform_lab.judging.codec import LARGEST_ARRAY, LONGEST_LIST, NotPlain, Other, decode, encode
 
@@ -47,6 +49,31 @@ def test_messages_come_back_by_their_fields():
     pose = Pose(Point(1, 2, 3), Quaternion(0, 0, 0, 1))
     assert there_and_back(pose) == pose
     assert there_and_back(PoseStamped(pose=pose)).pose == pose
+
+
+ODD = {
+    "number": 0.5, "not a number": math.nan, "integer": 3, "large integer": 2**60, "truth": True, "text": "x", "nothing": None,
+    "single precision": np.float32(0.1), "array": np.array([0.5]), "infinite array": np.array([1e308, 1e308, math.inf]),
+    "long list": [1.0] * 200, "rotation": Rotation.identity(), "class": Point, "itself": Quaternion(), "nested": [[[[[[[1.0]]]]]]],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("value", ODD.values(), ids=ODD)
+@pytest.mark.parametrize("around", [lambda value: value, lambda value: [[[[value]]]]], ids=["alone", "deep in lists"])
+def test_our_messages_are_read_as_any_objects_with_their_fields(value, around):
+    ours, other = Quaternion(0.0, 0.0, 0.0, 1.0), SimpleNamespace(x=0.0, y=value, z=0.0, w=1.0)
+    ours.y = value
+    pose, twin = Pose(Point(1.0, 2.0, 3.0), ours), SimpleNamespace(position=Point(1.0, 2.0, 3.0), orientation=other)
+    assert encode(around(ours)) == encode(around(other))
+    assert encode(around(pose)) == encode(around(twin))
+
+
+def test_our_message_without_a_field_is_read_by_those_it_has():
+    quaternion = Quaternion(1, 2, 3, 4)
+    del quaternion.w
+    assert encode(quaternion) == encode(Point(1, 2, 3))
+    del quaternion.x
+    assert encode(quaternion) == {"other": "Quaternion"}
 
 
 def test_any_object_with_the_fields_is_a_message():

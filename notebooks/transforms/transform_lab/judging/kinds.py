@@ -37,8 +37,9 @@ class Part:
     def agree(self, got, expected):
         """Whether two values are the same to the tolerance."""
         if self.quaternion:
-            return bool(min(np.abs(got - expected).max(), np.abs(got + expected).max()) <= TOLERANCE)
-        return bool(np.all(np.abs(got - expected) <= TOLERANCE * np.maximum(1.0, np.abs(expected))))
+            return any(np.abs(other).max() <= TOLERANCE for other in (got - expected, got + expected))
+        off = np.abs(got - expected)
+        return bool(off.max() <= TOLERANCE or (off <= TOLERANCE * np.maximum(1.0, np.abs(expected))).all())
 
     @staticmethod
     def fingerprint(numbers):

@@ -26,7 +26,7 @@ def array(answer, wanted, *shapes):
         numbers = np.array(answer)
         if numbers.dtype.kind not in "iuf":
             raise ValueError("no numbers")
-        numbers = numbers.astype(np.float64)
+        numbers = numbers.astype(np.float64, copy=False)
     except (TypeError, ValueError) as error:
         raise Unfit("wrong-type", f"{_no_numbers(answer)} instead of {wanted}") from error
     if numbers.shape not in shapes:

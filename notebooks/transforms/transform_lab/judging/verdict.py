@@ -7,6 +7,7 @@ called in another process), so a student and an instructor never see two opinion
 import json
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -31,6 +32,11 @@ class Reply:
     error: str = ""  # the student's own error, or why the call had to be stopped; in one line
     printed: str = ""  # the beginning of what it printed
     same_object: str = ""  # ARGUMENT or EARLIER_ANSWER (kinds.py), when the answer is no object of its own
+
+    @cached_property
+    def answer(self) -> object:
+        """The answer, decoded, which nobody may change; raises codec.NotPlain for a value that is no plain data."""
+        return codec.decode(self.value)
 
     @property
     def finished(self) -> bool:
@@ -148,7 +154,7 @@ def examine(
     for case, reply, outcome in answered:
         if not outcome.answered:  # there is none when calls only changed their arguments
             verdict.failing, verdict.error = case, reply.error
-            verdict.answer = codec.decode(reply.value) if reply.outcome == "returned" else None
+            verdict.answer = reply.answer if reply.outcome == "returned" else None
             break
     return verdict
 
@@ -204,16 +210,38 @@ def compare(returns: str, case: PlainCase, reply: Reply) -> Outcome:
     if reply.outcome == "raised":
         return Outcome(problem=("", reply.error))
     mutated = reply.arguments != [case["args"], case["kwargs"]]
-    expected = parts_of(returns, codec.decode(case["expected"]))
     try:
-        got = parts_of(returns, codec.decode(reply.value))
+        got = parts_of(returns, reply.answer)
     except Unfit as unfit:
         return Outcome(problem=(unfit.misconception, str(unfit)), mutated=mutated)
-    parts = KINDS[returns].parts
+    expected, parts = _parts_of_right(returns, Itself(case["expected"])), KINDS[returns].parts
     good = frozenset(name for name, part in parts.items() if part.agree(got[name], expected[name]))
-    problem = None if all(np.isfinite(value).all() for value in got.values()) else ("not-finite", "NaN or infinity")
+    answered = len(good) == len(parts)
+    finite = answered or all(np.isfinite(value).all() for value in got.values())
     same = "" if KINDS[returns].own(reply.same_object) else reply.same_object
-    return Outcome(good, len(good) == len(parts), got, expected, problem, mutated, same)
+    problem = None if finite else ("not-finite", "NaN or infinity")
+    return Outcome(good, answered, got, expected, problem, mutated, same)
+
+
+class Itself:
+    """An object in the key of a cache, which is found again by that very object alone, and keeps it."""
+
+    __slots__ = ("value",)
+
+    def __init__(self, value):
+        self.value = value
+
+    def __hash__(self):
+        return id(self.value)
+
+    def __eq__(self, other):
+        return self.value is other.value
+
+
+@lru_cache(maxsize=4_000)
+def _parts_of_right(returns, answer):
+    """The parts of a case's right answer (as Itself), which is compared with the answers of a whole class."""
+    return parts_of(returns, codec.decode(answer.value))
 
 
 def _credit(exercise: PlainExercise, cases: list[PlainCase], outcomes: list[Outcome]) -> float:

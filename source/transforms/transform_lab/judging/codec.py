@@ -16,6 +16,7 @@ notebook. Whatever an object claims about itself, only these numbers reach the j
 """
 
 import math
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -37,7 +38,7 @@ MESSAGES = {
     "Point": ("x", "y", "z"),
     "Header": ("seq", "stamp", "frame_id"),
 }
-OURS = {getattr(messages, name): name for name in MESSAGES}
+OURS = {getattr(messages, name): attrgetter(*fields) for name, fields in MESSAGES.items()}
 
 
 class NotPlain(ValueError):
@@ -52,6 +53,8 @@ def encode(value: object, depth: int = 0, room: list[int] | None = None, in_fiel
     """
     if type(value) is float:  # most of all there is
         return _number(value)
+    if type(value) in OURS and depth < DEEPEST and (values := _values(value)):
+        return _filled(type(value).__name__, values, depth, room)
     if value is None or isinstance(value, (bool, np.bool_)):
         return None if value is None else bool(value)
     if isinstance(value, (int, np.integer)):
@@ -66,7 +69,7 @@ def encode(value: object, depth: int = 0, room: list[int] | None = None, in_fiel
     if depth >= DEEPEST or isinstance(value, type):  # a class has its messages' fields, too
         return _other(value)
     if (name := _message(value)) is not None and (in_field or name != "Point" or not libraries.is_array(value)):
-        return {"message": name, "fields": {field: _field(value, field, depth, room) for field in MESSAGES[name]}}
+        return _filled(name, [getattr(value, field) for field in MESSAGES[name]], depth, room)
     if isinstance(value, (list, tuple)) and not libraries.is_matrix(value):  # JAX's Rotation is a tuple, too
         if len(value) > LONGEST_LIST:
             return _other(value)
@@ -80,12 +83,23 @@ def encode(value: object, depth: int = 0, room: list[int] | None = None, in_fiel
     return _other(value, in_field) if found is None else encode(found, depth, room)
 
 
-def _field(message, field, depth, room):
-    """A field of a message; another library's rotation is no Quaternion, and is called what it is."""
-    value = getattr(message, field)
-    if type(value) is float:
-        return _number(value)
-    return _other(value, True) if libraries.is_matrix(value) else encode(value, depth + 1, room, True)
+def _values(message):
+    """The values of all fields of one of our messages; None where one has been deleted."""
+    try:
+        return OURS[type(message)](message)
+    except AttributeError:
+        return None
+
+
+def _filled(name, values, depth, room):
+    """A message with these values in its fields; another library's rotation is no Quaternion, and is called what it is."""
+    fields = {}
+    for field, value in zip(MESSAGES[name], values):
+        if type(value) is float:
+            fields[field] = _number(value)
+        else:
+            fields[field] = _other(value, True) if libraries.is_matrix(value) else encode(value, depth + 1, room, True)
+    return {"message": name, "fields": fields}
 
 
 def _things(value, depth, room):
@@ -107,8 +121,6 @@ def _take(room, things):
 
 def _message(value):
     """The name of the message that has the fields of `value`, or None."""
-    if (ours := OURS.get(type(value))) and all(hasattr(value, field) for field in MESSAGES[ours]):
-        return ours
     if libraries.is_transform(value):  # spatialmath's SE3 has x, y and z
         return None
     for name, fields in MESSAGES.items():
