@@ -54,7 +54,8 @@ def test_messages_come_back_by_their_fields():
 ODD = {
     "number": 0.5, "not a number": math.nan, "integer": 3, "large integer": 2**60, "truth": True, "text": "x", "nothing": None,
     "single precision": np.float32(0.1), "array": np.array([0.5]), "infinite array": np.array([1e308, 1e308, math.inf]),
-    "long list": [1.0] * 200, "rotation": Rotation.identity(), "class": Point, "itself": Quaternion(), "nested": [[[[[[[1.0]]]]]]],
+    "long list": [1.0] * 200, "rotation": Rotation.identity(), "class": Point, "itself": Quaternion(),
+    "nested": [[[[[[[1.0]]]]]]],
 }  # fmt: skip
 
 
