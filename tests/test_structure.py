@@ -22,7 +22,7 @@ ROOMS = {
     ],
     "autograder": [
         "exercises environment files names untrusted",
-        "released",
+        "released set_up",
         "course sandbox",
         "proving intake",
         "grading",
@@ -30,6 +30,7 @@ ROOMS = {
         "pages collecting",
         "handout demo doctor",
         "commands",
+        "command_line",
         "__main__",
     ],
 }
