@@ -26,6 +26,7 @@ CLONE_NEWUSER, CLONE_NEWPID = 0x10000000, 0x20000000
 NAMESPACES = 0x00020000 | 0x04000000 | 0x08000000 | 0x40000000 | 0x02000000  # mounts, host name, IPC, network, cgroups
 PR_SET_PDEATHSIG, PR_SET_DUMPABLE, PR_CAPBSET_DROP, PR_SET_THP_DISABLE = 1, 4, 24, 41
 LAST_CAPABILITY = 63
+FEW = 2  # processes: one in which the sandbox is tried, and that of the one notebook that `check` may be given
 
 
 def main():
@@ -39,10 +40,10 @@ def main():
     try:
         executor, rules = _load()
         signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for what is forked
-        ready_for_figures = False
+        forked, ready_for_figures = 0, False
         while True:
-            if not ready_for_figures and not select.select([control], [], [], 0)[0]:
-                _load_figures()  # while nobody waits: half of a start, and not every notebook draws
+            if forked >= FEW and not ready_for_figures and not select.select([control], [], [], 0)[0]:
+                _load_figures()  # while nobody waits: half of a start, and few notebooks draw
                 ready_for_figures = True
             command, descriptors, _, _ = socket.recv_fds(control, 1, 2)
             if not command:
@@ -54,6 +55,7 @@ def main():
                 _enter(libc, own, CLONE_NEWPID)
             elif os.fork() == 0:  # who has no right to come back does not leave
                 _guard(libc, executor, rules, *descriptors)
+            forked += 1
             for descriptor in descriptors:
                 os.close(descriptor)
     finally:
