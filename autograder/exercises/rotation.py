@@ -4,7 +4,7 @@ import itertools
 import math
 
 import numpy as np
-from scipy.spatial.transform import Rotation
+from transform_lab.arithmetic import Rotation
 from transform_lab.judging.kinds import TOLERANCE
 from transform_lab.judging.naming import together
 

@@ -40,11 +40,11 @@ def main():
     try:
         executor, rules = _load()
         signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for what is forked
-        forked, ready_for_figures = 0, False
+        forked, complete = 0, False
         while True:
-            if forked >= FEW and not ready_for_figures and not select.select([control], [], [], 0)[0]:
-                _load_figures()  # while nobody waits: half of a start, and few notebooks draw
-                ready_for_figures = True
+            if forked >= FEW and not complete and not select.select([control], [], [], 0)[0]:
+                _load_more()  # while nobody waits: more than half of a start, and not every notebook needs them
+                complete = True
             command, descriptors, _, _ = socket.recv_fds(control, 1, 2)
             if not command:
                 return
@@ -66,7 +66,6 @@ def _load():
     """Import what notebooks use, and set IPython up."""
     with _home():
         import numpy.random  # noqa: F401
-        import scipy.spatial.transform  # noqa: F401
         from executor import Executor
 
         rules = None
@@ -82,10 +81,11 @@ def _load():
     return executor, rules
 
 
-def _load_figures():
+def _load_more():
     with _home():
         import matplotlib.backends.backend_agg
         import matplotlib.pyplot  # noqa: F401
+        import scipy.spatial.transform  # noqa: F401
 
 
 @contextmanager
