@@ -42,7 +42,7 @@ def main():
         signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for what is forked
         forked, complete = 0, False
         while True:
-            if forked >= FEW and not complete and not select.select([control], [], [], 0)[0]:
+            if forked > FEW and not complete and not select.select([control], [], [], 0)[0]:
                 _load_more()  # while nobody waits: more than half of a start, and not every notebook needs them
                 complete = True
             command, descriptors, _, _ = socket.recv_fds(control, 1, 2)

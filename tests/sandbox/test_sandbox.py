@@ -15,7 +15,7 @@ from transform_lab.judging.verdict import examine
 from autograder.sandbox import Ended, Limits, Sandbox
 from autograder.sandbox.bubblewrap import Namespaces, compiled_filter, copy_code
 from autograder.sandbox.channel import MOST_RECEIVED
-from autograder.sandbox.host import MOST_OUTPUTS, MOST_REPLIED
+from autograder.sandbox.host import MOST_OUTPUTS, MOST_REPLIED, ForkServer
 
 PACKAGE = ROOT / "source/transforms/transform_lab"
 QUICK = Limits(cell=4.0, call=2.0, grace=1.0)  # for loops to end soon; ample for the rest on a busy machine
@@ -105,6 +105,13 @@ def test_figures_are_shown_at_the_end_of_the_cell(sandbox):
     with Sandbox(PACKAGE, limits=Limits()) as patient:
         outputs = run(patient, "import matplotlib.pyplot as plt\nplt.plot([1, 2]);")
     assert "image/png" in outputs[0]["data"]
+
+
+def test_what_few_notebooks_need_is_loaded_when_there_are_many(sandbox, monkeypatch):
+    monkeypatch.setattr(ForkServer, "current", None)
+    loaded = "import sys, time; time.sleep(1); sorted({'matplotlib', 'scipy'} & set(sys.modules))"
+    assert [value(sandbox, loaded) for _ in range(3)] == ["[]", "[]", "[]"]
+    wait_for(lambda: value(sandbox, loaded) == "['matplotlib', 'scipy']")
 
 
 def test_a_function_is_called_with_plain_data(sandbox):
