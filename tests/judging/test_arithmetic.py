@@ -9,14 +9,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.spatial.transform import Rotation
-from support import ROOT
+from support import ASKED, ROOT
 from transform_lab import arithmetic
 
 from autograder.exercises import cases
 
 NUMBERS = st.floats(-4.0, 4.0) | st.sampled_from([0.0, 1.0, -1.0, 1e-3, 1e-9, np.pi])
 VECTORS, QUATERNIONS = (arrays(float, number, elements=NUMBERS) for number in (3, 4))
-WITHOUT_SCIPY = "2_homogeneous_transforms 3_chaining 4_inversion 5_pre_grasp".split()
 
 
 def of_matrix(R):
@@ -50,6 +49,15 @@ def test_of_a_rotation_vector(vector):
         alike(ours, theirs)
 
 
+@given(QUATERNIONS, VECTORS)
+def test_of_a_turn_after_another(q, vector):
+    if q.any():
+        alike(
+            lambda: arithmetic.turned(q, vector),
+            lambda: (Rotation.from_quat(q) * Rotation.from_rotvec(vector)).as_quat(),
+        )
+
+
 @given(arrays(float, (3, 3), elements=NUMBERS))
 def test_of_what_may_be_no_rotation(R):
     for ours, theirs in of_matrix(R):
@@ -78,7 +86,7 @@ def test_what_is_no_quaternion(q):
     alike(lambda: arithmetic.matrix_of(q), lambda: Rotation.from_quat(q).as_matrix())
 
 
-@pytest.mark.parametrize("notebook", WITHOUT_SCIPY)
+@pytest.mark.parametrize("notebook", ASKED)
 def test_cases_are_drawn_without_scipy(notebook):
     code = (
         "import sys; from pathlib import Path; from autograder.course import Course; from autograder.grading.grade import Keys;"

@@ -26,20 +26,30 @@ Rotation = _Loaded()
 
 def matrix_of(q):
     """The 3x3 matrix of a quaternion x, y, z, w of any length but 0."""
-    x, y, z, w = map(float, q)
-    length = sqrt(x * x + y * y + z * z + w * w)
+    length = _length(q)
     if not length > 0.0:
         return Rotation.from_quat(q).as_matrix()  # raises its own error
-    return _matrix(x / length, y / length, z / length, w / length)
+    return _matrix(*(float(number) / length for number in q))
 
 
 def turn(vector):
     """The 3x3 matrix of a rotation vector: the axis, as long as the angle (radians)."""
-    x, y, z = map(float, vector)
-    angle = sqrt(x * x + y * y + z * z)
-    square = angle * angle
-    scale = 0.5 - square / 48 + square * square / 3840 if angle <= SMALL else sin(angle / 2) / angle
-    return _matrix(scale * x, scale * y, scale * z, cos(angle / 2))
+    return _matrix(*_quaternion_of_vector(vector))
+
+
+def turned(q, vector):
+    """x, y, z, w of the rotation of a unit quaternion, after a turn by a rotation vector given in the turned frame."""
+    length = _length(q)
+    (x, y, z, w), (a, b, c, d) = (float(number) / length for number in q), _quaternion_of_vector(vector)
+    product = np.array(
+        [
+            w * a + d * x + (y * c - z * b),
+            w * b + d * y + (z * a - x * c),
+            w * c + d * z + (x * b - y * a),
+            w * d - x * a - y * b - z * c,
+        ]
+    )
+    return product / _length(product)
 
 
 def quaternion_of(R):
@@ -57,8 +67,7 @@ def quaternion_of(R):
         j, k = (i + 1) % 3, (i + 2) % 3
         q = [0.0, 0.0, 0.0, m[k][j] - m[j][k]]
         q[i], q[j], q[k] = 1 - trace + 2 * m[i][i], m[j][i] + m[i][j], m[k][i] + m[i][k]
-    x, y, z, w = q
-    return np.array(q) / sqrt(x * x + y * y + z * z + w * w)
+    return np.array(q) / _length(q)
 
 
 def vector_of(R):
@@ -75,6 +84,19 @@ def angle_of(R):
     """The angle of a 3x3 matrix (radians, 0 to pi)."""
     x, y, z, w = quaternion_of(R).tolist()
     return 2 * atan2(sqrt(x * x + y * y + z * z), abs(w))
+
+
+def _length(q):
+    x, y, z, w = map(float, q)
+    return sqrt(x * x + y * y + z * z + w * w)
+
+
+def _quaternion_of_vector(vector):
+    x, y, z = map(float, vector)
+    angle = sqrt(x * x + y * y + z * z)
+    square = angle * angle
+    scale = 0.5 - square / 48 + square * square / 3840 if angle <= SMALL else sin(angle / 2) / angle
+    return scale * x, scale * y, scale * z, cos(angle / 2)
 
 
 def _matrix(x, y, z, w):

@@ -27,7 +27,7 @@ Of q and -q, and of the angles that describe one and the same rotation, the one 
 has beside the functions below (cameras' projections, shears, crystals, an arcball) is not here.
 
 Source: names, signatures and conventions follow C. Gohlke's ``transformations.py`` as shipped with ROS 1; rotation
-arithmetic is SciPy's ``Rotation``.
+arithmetic is SciPy's ``Rotation``, or the same without loading it (arithmetic.py).
 """
 
 import math
