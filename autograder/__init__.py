@@ -14,9 +14,10 @@ _SOURCE = str(Path(__file__).resolve().parent.parent / "source" / ASSIGNMENT)
 if _SOURCE not in sys.path:
     sys.path.insert(0, _SOURCE)
 
-# nbformat imports jsonschema, and jsonschema this one, which takes a second to build a grammar of international web
+# nbformat imports jsonschema, and jsonschema these, of which one takes a second to build a grammar of international web
 # addresses. No notebook's schema asks for them, and jsonschema does without.
-sys.modules.setdefault("rfc3987_syntax", None)  # type: ignore[arg-type]  # None: it cannot be imported
+for _package in "rfc3987_syntax", "isoduration", "rfc3986_validator", "webcolors", "rfc3339_validator":
+    sys.modules.setdefault(_package, None)  # type: ignore[arg-type]  # None: it cannot be imported
 
 # NumPy's and SciPy's linear algebra starts a thread for each core, and for 4x4 matrices they only wait for each other.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")

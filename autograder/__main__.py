@@ -9,11 +9,14 @@ ROOT = Path(__file__).resolve().parent.parent
 
 
 def main():
-    try:
-        environment.ensure(ROOT, sys.argv[1:])
-    except environment.SetupFailed as failure:
-        sys.exit(str(failure))
-    from .commands import run
+    if not environment.suits(ROOT):
+        from .set_up import SetupFailed, go_on
+
+        try:
+            go_on(ROOT, sys.argv[1:])
+        except SetupFailed as failure:
+            sys.exit(str(failure))
+    from .command_line import run
 
     sys.exit(run(sys.argv[1:]))
 

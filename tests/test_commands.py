@@ -11,7 +11,7 @@ from pathlib import Path
 
 import nbformat
 import pytest
-from support import ASKED, path_without, points, points_by_hand, run, scores, statuses, verdicts
+from support import ASKED, ROOT, path_without, points, points_by_hand, run, scores, statuses, verdicts
 
 from autograder import doctor
 from autograder.bridge.gradebook import Writer
@@ -24,6 +24,21 @@ from autograder.exercises import EXERCISES
 def without_bubblewrap():
     """A PATH on which there is no bwrap."""
     return path_without("bwrap")
+
+
+# --- what is asked for ----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("asked", ["--help", "grade --help", "check --help", "no-such-command", "grade --jobs none"])
+def test_nothing_is_loaded_to_read_a_command_line(asked):
+    command = [sys.executable, "-X", "importtime", "-m", "autograder", *asked.split()]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    assert "usage:" in done.stdout + done.stderr
+    loaded = {line.rpartition("|")[2].strip() for line in done.stderr.splitlines() if line.startswith("import time:")}
+    packages = {name.partition(".")[0] for name in loaded} - {"autograder"} - sys.stdlib_module_names
+    assert "autograder.command_line" in loaded and "autograder.commands" not in loaded
+    assert not {"subprocess", "hashlib", "importlib.metadata", "dataclasses"} & loaded
+    assert {name for name in packages if not name.startswith(("_", "imported"))} <= {"sitecustomize", "usercustomize"}
 
 
 # --- grade ----------------------------------------------------------------------------------------------------------

@@ -23,10 +23,10 @@ from packaging.markers import Marker
 from packaging.requirements import Requirement
 from support import ROOT
 
-from autograder import environment
+from autograder import environment, set_up
 
 NOTHING = "# no package\n"
-ANEW = f"environment.lock does not fit environment.txt. Make it anew: {environment.MAKE_LOCK}"
+ANEW = f"environment.lock does not fit environment.txt. Make it anew: {set_up.MAKE_LOCK}"
 UV = shutil.which("uv", path=Path(sys.prefix, "bin"))  # one of environment.txt's packages
 
 
@@ -93,16 +93,16 @@ def has_the_package(python):
 
 
 def test_it_is_made_once(root):
-    python = environment.make(root)
+    python = set_up.make(root)
     assert prefix(python) == str(root / ".venv")
     (root / ".venv" / "mark").touch()
-    assert environment.make(root) == python
+    assert set_up.make(root) == python
     assert (root / ".venv" / "mark").exists()
 
 
 @pytest.mark.parametrize("spoil", ["interrupted", "requirements", "lock", "broken", "moved"])
 def test_it_is_made_anew_when_it_is_not_whole(root, tmp_path_factory, spoil):
-    environment.make(root)
+    set_up.make(root)
     (root / ".venv" / "mark").touch()
     if spoil == "interrupted":
         (root / ".venv" / "stamp").unlink()
@@ -114,18 +114,18 @@ def test_it_is_made_anew_when_it_is_not_whole(root, tmp_path_factory, spoil):
         (root / ".venv" / "bin" / "python").unlink()
     else:
         root = root.rename(tmp_path_factory.mktemp("elsewhere") / "course")
-    assert prefix(environment.make(root)) == str(root / ".venv")
+    assert prefix(set_up.make(root)) == str(root / ".venv")
     assert not (root / ".venv" / "mark").exists()
 
 
 def test_a_failed_set_up_says_what_to_do_and_is_repaired(root, tools):
     (tools / "uv").symlink_to(UV)
     (root / "environment.lock").write_text("no-such-package==1.0 --hash=sha256:00\n")
-    with pytest.raises(environment.SetupFailed, match="no-such-package(?s:.*)run the same command again"):
-        environment.make(root)
+    with pytest.raises(set_up.SetupFailed, match="no-such-package(?s:.*)run the same command again"):
+        set_up.make(root)
     assert not (root / ".venv" / "stamp").exists()
     (root / "environment.lock").write_text(NOTHING)
-    assert prefix(environment.make(root)) == str(root / ".venv")
+    assert prefix(set_up.make(root)) == str(root / ".venv")
 
 
 def test_what_an_interpreter_lacks(root):
@@ -134,10 +134,27 @@ def test_what_an_interpreter_lacks(root):
     assert environment.lacking(root / "environment.txt") == ["pytest", "no-such-package-anywhere"]
 
 
+def test_the_names_of_folders_tell_what_the_packages_themselves_do():
+    told = {}
+    for package in metadata.distributions():
+        told.setdefault(environment.normal(package.name), package.version)
+    assert environment.installed() == told
+
+
+@pytest.mark.parametrize("form", ["{}-{}.dist-info", "{}-{}.egg-info", "{}-{}-py3.11.egg-info"])
+def test_the_package_that_python_finds_first_counts(root, monkeypatch, form):
+    for place, version in ("first", "1.0"), ("second", "2.0"):
+        (root / place / form.format("a_Package", version)).mkdir(parents=True)
+    monkeypatch.setattr(sys, "path", [str(root / place) for place in ("nowhere", "first", "second")])
+    assert environment.installed() == {"a-package": "1.0"}
+    (root / "environment.txt").write_text("a.package==2.0\n")
+    assert environment.lacking(root / "environment.txt") == ["a.package"]
+
+
 def test_an_old_python_is_told_so(root, monkeypatch):
-    monkeypatch.setattr(environment, "OLDEST", (99, 0))
-    with pytest.raises(environment.SetupFailed, match="Python 99.0 or newer is needed"):
-        environment.ensure(root, [])
+    monkeypatch.setattr(set_up, "OLDEST", (99, 0))
+    with pytest.raises(set_up.SetupFailed, match="Python 99.0 or newer is needed"):
+        set_up.go_on(root, [])
 
 
 # --- with uv or pip -------------------------------------------------------------------------------------------------
@@ -146,7 +163,7 @@ def test_an_old_python_is_told_so(root, monkeypatch):
 def test_uv_is_used_where_there_is_one(root, tools, capsys):
     needs_a_package(root)
     (tools / "uv").symlink_to(UV)
-    assert has_the_package(environment.make(root))
+    assert has_the_package(set_up.make(root))
     said = capsys.readouterr().err
     assert "with uv" in said and "fetching" not in said and "pip" not in said
 
@@ -160,7 +177,7 @@ def test_uv_is_fetched_where_there_is_none_that_serves(root, tools, monkeypatch,
         lock.write(entry.replace("==1.0", "==1.0 ; python_full_version < '3.0'"))  # uv itself is for any Python
     if there == "old":
         pretend_uv(tools, "exit 2", "0.1.24")
-    assert has_the_package(environment.make(root))
+    assert has_the_package(set_up.make(root))
     said = capsys.readouterr().err
     assert "fetching uv" in said and "with uv" in said and "minutes" not in said
     assert (root / "log").read_text() == "fetched\n"
@@ -181,10 +198,10 @@ def test_pip_is_used_where_uv_is_not_to_be_had_or_fails(root, tools, monkeypatch
         wheel(root, "uv", {"uv": f"touch {root}/ran"})
         with open(root / "environment.lock", "a") as lock:
             lock.write(f"uv==1.0 \\\n    --hash=sha256:{'0' * 64}\n")
-        monkeypatch.setattr(environment, "_with_pip", lambda *arguments: None)  # it would find the same
+        monkeypatch.setattr(set_up, "_with_pip", lambda *arguments: None)  # it would find the same
     elif why == "fails":
         pretend_uv(tools, "echo error: the disk is full; echo cause: too much on it; exit 2")
-    python = environment.make(root)
+    python = set_up.make(root)
     said = [line for line in capsys.readouterr().err.splitlines() if "minutes" in line]
     assert len(said) == 1 and reason in said[0]
     assert not (root / "ran").exists()
@@ -198,23 +215,23 @@ def test_other_bytes_than_the_locks_are_not_installed(root, tools, with_uv, slow
         (tools / "uv").symlink_to(UV)
     with zipfile.ZipFile(root / "lacking_here-1.0-py3-none-any.whl", "a") as archive:
         archive.writestr("lacking_here/more.py", "")
-    with pytest.raises(environment.SetupFailed, match="(?i)hash"):
-        environment.make(root)
+    with pytest.raises(set_up.SetupFailed, match="(?i)hash"):
+        set_up.make(root)
     assert not has_the_package(root / ".venv" / "bin" / "python")
 
 
 def test_pip_that_python_carries_along_serves_where_it_has_none(root, tools, monkeypatch, slow):
     """As on Debian, where pip is a package of its own."""
     needs_a_package(root)
-    run = environment._run
+    run = set_up._run
 
     def without_pip(step, *progress):
         if "import pip" in step:
-            raise environment.StepFailed("No module named pip")
+            raise set_up.StepFailed("No module named pip")
         return run(step, *progress)
 
-    monkeypatch.setattr(environment, "_run", without_pip)
-    assert has_the_package(environment.make(root))
+    monkeypatch.setattr(set_up, "_run", without_pip)
+    assert has_the_package(set_up.make(root))
 
 
 @pytest.mark.parametrize("why", ["changed", "added", "gone", "machine", "python"])
@@ -229,15 +246,15 @@ def test_without_a_lock_that_fits_the_requirements_are_installed(root, tools, mo
     elif why == "gone":
         lock.unlink()
     elif why == "machine":
-        monkeypatch.setattr(environment.platform, "machine", lambda: "riscv64")
+        monkeypatch.setattr(set_up.platform, "machine", lambda: "riscv64")
     else:
-        monkeypatch.setattr(environment, "NEWEST_LOCKED", (3, 10))
-    assert has_the_package(environment.make(root))
+        monkeypatch.setattr(set_up, "NEWEST_LOCKED", (3, 10))
+    assert has_the_package(set_up.make(root))
     said = capsys.readouterr().err
     if why in ("machine", "python"):
-        assert "environment.lock is not for Python 3." in said and environment.MAKE_LOCK not in said
+        assert "environment.lock is not for Python 3." in said and set_up.MAKE_LOCK not in said
     else:
-        assert "does not pin lacking_here as environment.txt does" in said and environment.MAKE_LOCK in said
+        assert "does not pin lacking_here as environment.txt does" in said and set_up.MAKE_LOCK in said
 
 
 def test_what_python_finds_elsewhere_is_installed_all_the_same(root, tools, tmp_path, monkeypatch):
@@ -245,7 +262,7 @@ def test_what_python_finds_elsewhere_is_installed_all_the_same(root, tools, tmp_
     needs_a_package(root)
     shutil.unpack_archive(root / "lacking_here-1.0-py3-none-any.whl", tmp_path / "ros", "zip")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path / "ros"))
-    python = environment.make(root)
+    python = set_up.make(root)
     monkeypatch.delenv("PYTHONPATH")
     assert has_the_package(python)
 
@@ -255,8 +272,8 @@ def test_modules_are_compiled_where_the_first_import_will_not_do_it(root, tools,
     needs_a_package(root)
     (tools / "uv").symlink_to(UV)
     monkeypatch.setattr(sys, "dont_write_bytecode", not written)
-    monkeypatch.setattr(environment, "LOADED_MOST", ("json lacking_here", "lacking_here no_such_module"))
-    environment.make(root)
+    monkeypatch.setattr(set_up, "LOADED_MOST", ("json lacking_here", "lacking_here no_such_module"))
+    set_up.make(root)
     assert bool(list((root / ".venv").rglob("lacking_here.*.pyc"))) is not written
     assert (
         "start slowly: ModuleNotFoundError: No module named 'no_such_module'" in capfd.readouterr().err
@@ -264,7 +281,7 @@ def test_modules_are_compiled_where_the_first_import_will_not_do_it(root, tools,
 
 
 def test_what_most_commands_load_is_there():
-    for names in environment.LOADED_MOST:
+    for names in set_up.LOADED_MOST:
         assert all(map(importlib.util.find_spec, names.split()))
 
 
@@ -277,9 +294,9 @@ def command(root, tools):
     needs_a_package(root)
     package = root / "autograder"
     package.mkdir()
-    for name in ("__init__.py", "__main__.py", "environment.py"):
+    for name in ("__init__.py", "__main__.py", "environment.py", "set_up.py"):
         shutil.copy(ROOT / "autograder" / name, package)
-    (package / "commands.py").write_text(
+    (package / "command_line.py").write_text(
         "import sys\ndef run(arguments):\n    print(sys.prefix, arguments)\n    return 3\n"
     )
     (tools / "uv").symlink_to(UV)
@@ -347,8 +364,8 @@ def test_a_terminal_shows_how_far_it_is(root, tools, command):
 # --- environment.txt and environment.lock ---------------------------------------------------------------------------
 
 
-MACHINES = [(system, machine) for system, machines in environment.LOCKED.items() for machine in machines]
-PYTHONS = ["3.11.0", *(f"3.{minor}.9" for minor in range(11, environment.NEWEST_LOCKED[1] + 1))]
+MACHINES = [(system, machine) for system, machines in set_up.LOCKED.items() for machine in machines]
+PYTHONS = ["3.11.0", *(f"3.{minor}.9" for minor in range(11, set_up.NEWEST_LOCKED[1] + 1))]
 
 
 def machine_environment(system, machine, python):
@@ -440,20 +457,20 @@ def test_the_lock_fits():
     requirements, lock = files()
     assert wrong_in(requirements, lock) == [], ANEW
     assert len(locked(lock)) > 3 * len(environment.pins(requirements)), ANEW
-    assert f"#    {environment.MAKE_LOCK}\n" in lock, ANEW
+    assert f"#    {set_up.MAKE_LOCK}\n" in lock, ANEW
     assert "://" not in lock and not re.search(r"^-", lock, re.MULTILINE)  # no registry, no option
 
 
 def test_what_the_lock_is_for_is_said_to_uv():
     said = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["uv"]
-    major, minor = environment.NEWEST_LOCKED
+    major, minor = set_up.NEWEST_LOCKED
     assert said == {
         "environments": [f"python_full_version < '{major}.{minor + 1}'"],
         "required-environments": [
             f"sys_platform == '{system}' and platform_machine == '{machine}'" for system, machine in MACHINES
         ],
     }
-    assert f"--python-version {'.'.join(map(str, environment.OLDEST))} " in environment.MAKE_LOCK
+    assert f"--python-version {'.'.join(map(str, environment.OLDEST))} " in set_up.MAKE_LOCK
 
 
 @pytest.mark.parametrize(
@@ -486,6 +503,6 @@ def test_requirements_that_the_lock_does_not_fit_are_noticed(change):
     name = change.partition("==")[0]
     changed = re.sub(rf"^{name}==.*\n", "", requirements, flags=re.MULTILINE) + change + "\n"
     assert any(line.startswith(name) for line in wrong_in(changed, lock))
-    assert environment.unfit(requirements, lock) is None
-    assert f"does not pin {name} " in environment.unfit(changed, lock)
-    assert environment.MAKE_LOCK in environment.unfit(changed, lock)
+    assert set_up.unfit(requirements, lock) is None
+    assert f"does not pin {name} " in set_up.unfit(changed, lock)
+    assert set_up.MAKE_LOCK in set_up.unfit(changed, lock)

@@ -3,8 +3,8 @@
 from itertools import permutations, product
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 from transform_lab import Point, Pose, Quaternion
+from transform_lab.arithmetic import Rotation, matrix_of, quaternion_of, turn, vector_of
 
 SMALL = range(-6, 0)  # decades of metres and radians below 1 that are felt at a tolerance of 1e-6
 FAR = range(1, 4)  # decades of metres beyond 10
@@ -31,12 +31,12 @@ def rotation(rng):
     Nor is its trace near zero, which is negative in every second one: formulas that have a branch for each agree on which.
     """
     sizes = rng.permutation([0.15, 0.36, 0.56, 0.73]) + rng.uniform(-0.04, 0.04, size=4)
-    return Rotation.from_quat(sizes * rng.choice([-1.0, 1.0], size=4)).as_matrix()
+    return matrix_of(sizes * rng.choice([-1.0, 1.0], size=4))
 
 
 def rotation_about(axis, angle):
     """The rotation by `angle` (radians) about `axis` (any length)."""
-    return Rotation.from_rotvec(angle * np.asarray(axis, dtype=float) / np.linalg.norm(axis)).as_matrix()
+    return turn(angle * np.asarray(axis, dtype=float) / np.linalg.norm(axis))
 
 
 def half_turn(rng, largest=None):
@@ -154,7 +154,7 @@ def transform(R, p):
 
 def at_right_angles(*turned):
     """A point 1 m away that a turn (3x3 or 4x4) moves most, at right angles to its axis; to those of both, for two turns."""
-    axes = [Rotation.from_matrix(each[:3, :3]).as_rotvec() for each in turned]
+    axes = [vector_of(each[:3, :3]) for each in turned]
     return np.linalg.svd([axis / np.linalg.norm(axis) for axis in axes])[2][-1]
 
 
@@ -219,7 +219,7 @@ def generic_transform(rng):
 
 def quaternion(R):
     """x, y, z, w of a rotation matrix."""
-    return Rotation.from_matrix(R).as_quat()
+    return quaternion_of(R)
 
 
 def pose_of(p, q):
@@ -245,7 +245,7 @@ def orientation(pose):
 
 def matrix(pose):
     """The 4x4 transform of a Pose; needs a quaternion other than 0, 0, 0, 0."""
-    return transform(Rotation.from_quat(orientation(pose)).as_matrix(), position(pose))
+    return transform(matrix_of(orientation(pose)), position(pose))
 
 
 def generic_pose(rng):

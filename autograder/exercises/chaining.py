@@ -4,7 +4,7 @@ from functools import reduce
 from itertools import pairwise
 
 import numpy as np
-from scipy.spatial.transform import Rotation
+from transform_lab.arithmetic import Rotation
 from transform_lab.judging.naming import together
 
 from .cases import (

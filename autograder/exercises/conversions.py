@@ -3,7 +3,7 @@
 import math
 
 import numpy as np
-from scipy.spatial.transform import Rotation
+from transform_lab.arithmetic import Rotation
 
 from .cases import off_diagonal, quaternion, x_axis_upright
 

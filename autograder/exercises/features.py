@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.spatial.transform import Rotation
+from transform_lab.arithmetic import angle_of, matrix_of, quaternion_of, vector_of
 
 from . import cases
 
@@ -175,7 +175,7 @@ def of_orientation(name):
     """Features of the rotation of a 4x4 transform or of a Pose that matter where it is, or becomes, a quaternion."""
 
     def component(value, index):
-        return abs(Rotation.from_matrix(_rotation(value)).as_quat()[index])
+        return abs(quaternion_of(_rotation(value))[index])
 
     return (
         Feature((name,), "short of a half turn", _short_of_half, SHORT_OF_HALF, "a half turn", lambda v: (_half(v),)),
@@ -284,7 +284,7 @@ def _rotation(value):
 
 
 def _angle(R):
-    return float(Rotation.from_matrix(R).magnitude())
+    return angle_of(R)
 
 
 def _short_of_half(value):
@@ -305,16 +305,16 @@ def _same_rotation(A, B):
 
 
 def _half(value):
-    vector = Rotation.from_matrix(_rotation(value)).as_rotvec()
+    vector = vector_of(_rotation(value))
     axis = vector if vector.any() else (0, 0, 1)
     return _like(value, cases.rotation_about(axis, np.pi), _matrix(value)[:3, 3])
 
 
 def _without_component(value, index):
-    q = Rotation.from_matrix(_rotation(value)).as_quat()
+    q = quaternion_of(_rotation(value))
     if abs(q[index]) < 1.0:
         q[index] = 0.0
-    return _like(value, Rotation.from_quat(q).as_matrix(), _matrix(value)[:3, 3])
+    return _like(value, matrix_of(q), _matrix(value)[:3, 3])
 
 
 def _w_positive(pose):

@@ -3,7 +3,7 @@
 import math
 
 import numpy as np
-from scipy.spatial.transform import Rotation
+from transform_lab.arithmetic import Rotation
 from transform_lab.judging.naming import together
 
 from .cases import (
@@ -322,7 +322,7 @@ HAND_TRANSFORM = Exercise(
         *(Misconception("left-handed", _hand(-R), *LEFT_HANDED) for R in signed_permutations()),  # all mirror images
         Misconception(
             "degrees-as-radians",
-            _hand(Rotation.from_euler("x", -90).as_matrix()),
+            _hand(rotation_about((1, 0, 0), -90.0)),
             "A quarter turn was taken as 90 radians.",
             "NumPy's and Python's sine and cosine expect radians; and a quarter turn needs neither.",
         ),

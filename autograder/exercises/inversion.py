@@ -1,7 +1,7 @@
 """The exercises of notebook 4: the inverse of a transform, and what it is good for."""
 
 import numpy as np
-from scipy.spatial.transform import Rotation
+from transform_lab.arithmetic import Rotation
 from transform_lab.judging.naming import together
 
 from .cases import (

@@ -5,7 +5,7 @@ from dataclasses import replace
 from itertools import product
 
 import numpy as np
-from scipy.spatial.transform import Rotation
+from transform_lab.arithmetic import Rotation
 from transform_lab.judging.naming import together
 
 from .cases import (

@@ -4,7 +4,7 @@ import itertools
 import math
 
 import numpy as np
-from scipy.spatial.transform import Rotation
+from transform_lab.arithmetic import Rotation, turn, turned
 from transform_lab.judging.kinds import TOLERANCE
 from transform_lab.judging.naming import together
 
@@ -31,7 +31,7 @@ from .specification import Case, Exercise, Misconception
 
 
 def rotation_about_z(degrees):
-    return Rotation.from_euler("z", degrees, degrees=True).as_matrix()
+    return turn((0.0, 0.0, np.radians(degrees)))
 
 
 def about_z_cases(rng):
@@ -884,7 +884,7 @@ ALIKE = 4e-7  # how far q1 and q2 may be from each other: half the angle between
 
 def _turned_in_itself(q, axis):
     """q after a turn by 0.9 about an axis of the turned frame: that axis points where it did."""
-    return (Rotation.from_quat(q) * Rotation.from_rotvec(0.9 * axis)).as_quat()
+    return turned(q, 0.9 * axis)
 
 
 def _shifted(q, by):

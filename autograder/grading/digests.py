@@ -58,19 +58,29 @@ def of_pages(course):
 def _of_code(package):
     """[digest of the code that decides grades, digest of the code and templates that make pages]
 
-    Reading the syntax of a hundred modules takes half a second: what came of it is remembered for the very same files.
+    Reading the syntax of a hundred modules takes half a second.
     """
+    return remembered(REMEMBERED, package, work_out)
+
+
+def remembered(file, package, work_out):
+    """What `work_out` makes of the Files (plain data): what it made of the very same ones before, if `file` has that."""
     files = files_of(package)
-    told = _digest({name: _sha(source) for name, source in files.modules.items()}, files.templates, files.versions)
+    told = _told(files)
     with contextlib.suppress(OSError, ValueError):
-        known, *found = json.loads(REMEMBERED.read_text(encoding="utf-8"))
+        known, found = json.loads(file.read_text(encoding="utf-8"))
         if known == told:
             return found
     found = work_out(files)
-    with contextlib.suppress(OSError):  # where nothing can be written, it is worked out each time
-        REMEMBERED.parent.mkdir(exist_ok=True)
-        replace(REMEMBERED, json.dumps([told, *found]))
+    if _told(files_of(package)) == told:  # nobody has changed one meanwhile
+        with contextlib.suppress(OSError):  # where nothing can be written, it is worked out each time
+            file.parent.mkdir(exist_ok=True)
+            replace(file, json.dumps([told, found]))
     return found
+
+
+def _told(files):
+    return _digest({name: _sha(source) for name, source in files.modules.items()}, files.templates, files.versions)
 
 
 class Files(NamedTuple):

@@ -71,10 +71,11 @@ def judge(
     if set(verdicts) != set(released.points):
         run = _Run(intake, released, keys, public, verdicts, examples)
         time, over, runs = sandbox.time(), False, 0
+        cells = [cell.source for cell in intake.notebook.cells if cell.cell_type == "code"]
         while set(verdicts) != set(released.points) and runs <= MOST_RESTARTS and not over:
             if runs:
                 time.cells.use(RESTART)
-            with sandbox.notebook(time, _given(released)) as process:
+            with sandbox.notebook(time, cells, _given(released)) as process:
                 run.through(process)
                 over = process.over
             runs += 1

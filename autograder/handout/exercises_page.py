@@ -9,12 +9,14 @@ from pathlib import Path
 import jinja2
 import numpy as np
 from transform_lab.judging.calling import call
+from transform_lab.judging.kinds import KINDS
 from transform_lab.judging.naming import GENERAL
-from transform_lab.judging.verdict import examine
+from transform_lab.judging.plain import open_parts_of
+from transform_lab.judging.verdict import Outcome, compare, credit
 from transform_lab.messages import Point, Pose, Quaternion
 from transform_lab.viewing.viewer import Viewer
 
-from ..exercises import EXERCISES, PUBLIC_SEED, key
+from ..exercises import EXERCISES
 
 PAGE = Path("autograder", "exercises", "README.md")  # in the course
 PICTURE = Path(__file__).parents[1] / "exercises" / "pre_grasp.png"  # shown in the README of the project
@@ -24,10 +26,10 @@ TEMPLATE = Path(__file__).with_suffix(".md")
 def page(public):
     """The text of README.md.
 
-    public: {exercise: its public cases as plain data, from autograder.exercises.key}; one that is not there is worked out
+    public: {exercise: its public cases as plain data, from autograder.exercises.key}
     """
     template = jinja2.Template(TEMPLATE.read_text(encoding="utf-8"), keep_trailing_newline=True)
-    described = [_described(known, public.get(name) or key(known, PUBLIC_SEED)) for name, known in EXERCISES.items()]
+    described = [_described(exercise, public[name]) for name, exercise in EXERCISES.items()]
     return template.render(general=GENERAL, exercises=described)
 
 
@@ -45,9 +47,9 @@ def picture():
 
 def _described(exercise, public):
     rows: dict = {}
-    for misconception in exercise.misconceptions:
+    for index, misconception in enumerate(exercise.misconceptions):
         row = (misconception.id, *(text.replace("\n", "<br>") for text in (misconception.says, misconception.hint)))
-        rows.setdefault(row, []).append(_earned(exercise, public, misconception))
+        rows.setdefault(row, []).append(earned(exercise, public, index))
     return {
         "signature": f"{exercise.name}{signature(exercise.reference)}",
         "families": [f"{family}{' (counts double)' if w == 2 else ''}" for family, w in public["weights"].items()],
@@ -59,10 +61,23 @@ def _described(exercise, public):
     }
 
 
-def _earned(exercise, public, misconception):
-    with np.errstate(all="ignore"):  # wrong implementations divide by zero; that is their point
-        verdict = examine(exercise.name, public, lambda args, kwargs: call(misconception.wrong, args, kwargs))
-    return int(100 * verdict.credit)
+def earned(exercise, public, index):
+    """The points out of 100 for a misconception's own answers, of which the key tells what is right in them."""
+    outcomes = [_outcome(exercise, case, index) for case in public["cases"]]
+    return int(round(100 * credit(public, public["cases"], outcomes), 9))  # 55 is a sum that may come out as 54.99…
+
+
+def _outcome(exercise, case, index):
+    told = case["wrong"][index]
+    if open_parts_of(told):
+        with np.errstate(all="ignore"):  # wrong implementations divide by zero; that is their point
+            return compare(
+                exercise.returns, case, call(exercise.misconceptions[index].wrong, case["args"], case["kwargs"])
+            )
+    parts = KINDS[exercise.returns].parts
+    told = [None] * len(parts) if told is None else told
+    right = [part for part, wrong in zip(parts, told) if wrong is None] if isinstance(told, list) else []
+    return Outcome(frozenset(right), len(right) == len(parts))
 
 
 if __name__ == "__main__":

@@ -9,7 +9,8 @@ import select
 import struct
 import time
 
-EXPECT, FORK = b"E", b"F"  # what a fork server is asked: to get ready for cells, to start a notebook's process
+# What a fork server is asked: to get ready for cells; to start a notebook's process; one that has SciPy and Matplotlib
+EXPECT, FORK, FORK_LARGER = b"E", b"F", b"L"
 LENGTH = struct.Struct(">I")
 MOST_RECEIVED = 4_000_000  # bytes in the life of a channel; twice what a notebook may output
 CHUNK = 1 << 16  # bytes that are read at once

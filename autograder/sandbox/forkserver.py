@@ -12,7 +12,6 @@ import gc
 import json
 import os
 import resource
-import select
 import shutil
 import signal
 import socket
@@ -22,7 +21,7 @@ from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
-from channel import EXPECT, Channel, Closed
+from channel import EXPECT, FORK, FORK_LARGER, Channel, Closed
 
 CLONE_NEWUSER, CLONE_NEWPID = 0x10000000, 0x20000000
 NAMESPACES = 0x00020000 | 0x04000000 | 0x08000000 | 0x40000000 | 0x02000000  # mounts, host name, IPC, network, cgroups
@@ -41,38 +40,58 @@ def main():
     try:
         executor, put_on_filter = _load()
         signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for what is forked
-        ready_for_figures = False
-        while True:
-            if not ready_for_figures and not select.select([control], [], [], 0)[0]:
-                _load_figures()  # while nobody waits: half of a start, and not every notebook draws
-                ready_for_figures = True
-            command, descriptors, _, _ = socket.recv_fds(control, 1, 2)
-            if not command:
-                return
-            if command == EXPECT:
-                with open(descriptors[0], encoding="utf-8") as cells:
-                    executor.shell.expect(json.load(cells))
-                gc.collect()
-                gc.freeze()
-                continue
-            if len(descriptors) == 1:
-                _start(libc, executor, put_on_filter, *descriptors)
-            elif os.getuid() == 0:
-                _start(libc, executor, put_on_filter, *descriptors)
-                _enter(libc, own, CLONE_NEWPID)
-            elif os.fork() == 0:  # who has no right to come back does not leave
-                _guard(libc, executor, put_on_filter, *descriptors)
-            for descriptor in descriptors:
-                os.close(descriptor)
+        _serve(control, libc, own, executor, put_on_filter)
     finally:
         shutil.rmtree(here, ignore_errors=True)
+
+
+def _serve(control, libc, own, executor, put_on_filter):
+    """Do what is asked over `control` until nobody is there any more."""
+    larger = None
+    while True:
+        command, descriptors, _, _ = socket.recv_fds(control, 1, 2)
+        if not command:
+            return
+        if command == EXPECT:
+            executor.shell.expect(json.loads(Path(f"/proc/self/fd/{descriptors[0]}").read_text(encoding="utf-8")))
+            gc.collect()
+            gc.freeze()
+            if larger:
+                socket.send_fds(larger, [EXPECT], descriptors)
+        elif command == FORK_LARGER:
+            larger = larger or _larger(control, libc, own, executor, put_on_filter)
+            socket.send_fds(larger, [FORK], descriptors)
+        elif len(descriptors) == 1:
+            _start(libc, executor, put_on_filter, *descriptors)
+        elif os.getuid() == 0:
+            _start(libc, executor, put_on_filter, *descriptors)
+            _enter(libc, own, CLONE_NEWPID)
+        elif os.fork() == 0:  # who has no right to come back does not leave
+            _guard(libc, executor, put_on_filter, *descriptors)
+        for descriptor in descriptors:
+            os.close(descriptor)
+
+
+def _larger(control, *served):
+    """Fork a server that loads what few notebooks need, and each fork of which costs more; our end of its control."""
+    ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    if os.fork() == 0:
+        try:
+            control.close()
+            ours.close()
+            _die_with_parent(served[0])
+            _load_more()
+            _serve(theirs, *served)
+        finally:
+            os._exit(0)
+    theirs.close()
+    return ours
 
 
 def _load():
     """Import what notebooks use, and set IPython up."""
     with _home():
         import numpy.random  # noqa: F401
-        import scipy.spatial.transform  # noqa: F401
         from executor import Executor
 
         put_on_filter = None
@@ -88,10 +107,11 @@ def _load():
     return executor, put_on_filter
 
 
-def _load_figures():
+def _load_more():
     with _home():
         import matplotlib.backends.backend_agg
         import matplotlib.pyplot  # noqa: F401
+        import scipy.spatial.transform  # noqa: F401
 
 
 @contextmanager

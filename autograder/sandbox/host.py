@@ -3,6 +3,7 @@
 import base64
 import json
 import os
+import re
 import secrets
 import select
 import shutil
@@ -26,9 +27,11 @@ from ..untrusted import printable
 from .account import Account
 from .bounds import COURSE, PATIENCE, WALL, Allowance, Limits, NotStarted
 from .bubblewrap import USER, Namespaces, copy_code
-from .channel import EXPECT, FORK, MOST_RECEIVED, Channel, Closed, Garbled, Late
+from .channel import EXPECT, FORK, FORK_LARGER, MOST_RECEIVED, Channel, Closed, Garbled, Late
 from .watch import UserWatch, Watch, waited
 
+# What is written where SciPy or Matplotlib is loaded; elsewhere they are loaded, if at all, in the notebook's own process.
+LARGER = re.compile(r"scipy|matplotlib|pylab|pyplot|seaborn|pandas|sympy")
 GLANCE = 0.25  # seconds between two looks at what a sandbox uses
 MOST_OUTPUTS = 2_000  # that a notebook may make
 MOST_REPLIED = 1_000_000  # bytes that come of all calls of an exercise
@@ -126,10 +129,13 @@ class ForkServer:
         except OSError:
             return False
 
-    def fork(self, connection, namespaces=None):
-        """Start a notebook's process that speaks over `connection` (the far end of a socket), inside `namespaces`."""
+    def fork(self, connection, namespaces=None, larger=False):
+        """Start a notebook's process that speaks over `connection` (the far end of a socket), inside `namespaces`.
+
+        larger: one that has loaded SciPy and Matplotlib, which takes a while at first
+        """
         handles = [connection.fileno(), *([namespaces.pidfd] if namespaces else [])]
-        socket.send_fds(self.control, [FORK], handles)
+        socket.send_fds(self.control, [FORK_LARGER if larger else FORK], handles)
 
     def said(self):
         """The end of what it wrote: why it failed, or why a notebook's process did before it ran anything."""
@@ -148,6 +154,7 @@ class Sandbox:
 
     def __init__(self, package, files=None, limits=Limits(), isolated=True):
         self.package, self.limits, self.isolated = package, limits, isolated
+        self.larger = any(LARGER.search(content.decode("latin-1")) for content in (files or {}).values())
         self.files = {path: base64.b64encode(content).decode() for path, content in (files or {}).items()}
 
     def __enter__(self):
@@ -161,10 +168,13 @@ class Sandbox:
         """The Time of one notebook, however often it is run, out of the submission's."""
         return Time(*(Allowance(self.limits.notebook, self.allowance) for _ in Time._fields))
 
-    def notebook(self, time=None, cells=frozenset()):
-        """A NotebookProcess in a new sandbox; cells: the texts of those that are likely to be run in it."""
-        ForkServer.serving(self.package).expect(cells)
-        return NotebookProcess(self, time or self.time())
+    def notebook(self, time=None, cells=(), expected=frozenset()):
+        """A NotebookProcess in a new sandbox.
+
+        cells: the texts of those that will be run in it, as far as they are known; expected: those that most notebooks have
+        """
+        ForkServer.serving(self.package).expect(expected)
+        return NotebookProcess(self, time or self.time(), self.larger or any(map(LARGER.search, cells)))
 
 
 class Time(NamedTuple):
@@ -361,7 +371,7 @@ class Snapshot(Asked):
 class NotebookProcess(Asked):
     """One notebook's process and all around it: a context manager with `run_cell` and `snapshot`."""
 
-    def __init__(self, sandbox, time_of_it):
+    def __init__(self, sandbox, time_of_it, larger):
         connection, inside = socket.socketpair()
         super().__init__(connection, MOST_RECEIVED, sandbox.limits, time_of_it.cells)
         self.time = time_of_it
@@ -388,7 +398,7 @@ class NotebookProcess(Asked):
                 folder = Path(self.folder.name, ASSIGNMENT)
                 shutil.copytree(server.code / sandbox.package.name, folder / sandbox.package.name)
                 settings |= {"limits": {}, "folder": str(folder), "environment": {"HOME": self.folder.name}}
-            server.fork(inside, self.namespaces)
+            server.fork(inside, self.namespaces, larger)
             inside.close()
             self._meet(connection)
             self.channel.send(settings)

@@ -2,7 +2,6 @@
 
 import re
 import shutil
-from functools import cache, partial
 
 import pytest
 from editing import Edited
@@ -11,7 +10,6 @@ from support import marks, run, scores, verdicts
 from autograder.bridge import nbgrader_api
 from autograder.bridge.gradebook import Writer
 from autograder.course import Course, CourseError
-from autograder.exercises import EXERCISES
 from autograder.grading.grade import Graded
 from autograder.grading.marks import Marks
 from autograder.handout import release as handout
@@ -186,16 +184,6 @@ def test_nbgraders_own_reason_is_told(taken, change, reason):
         nbgrader_api.call(taken, "generate_assignment", "transforms")
 
 
-@pytest.fixture
-def same_public_cases(monkeypatch):
-    """Releases of one test compute the public cases and the page of all exercises, which stay the same, only once."""
-    key = handout.key
-    once = cache(lambda name, seed: key(EXERCISES[name], seed))
-    monkeypatch.setattr(handout, "key", lambda exercise, seed: once(exercise.name, seed))
-    page = cache(partial(handout.exercises_page.page, {}))
-    monkeypatch.setattr(handout.exercises_page, "page", lambda public: page())
-
-
 def with_solutions(course, student):
     """Hand in the released notebooks, filled in as in source/."""
     solutions = source.notebooks(course)
@@ -222,7 +210,7 @@ def most(course):
     return exercises, exercises + questions
 
 
-def test_a_changed_course_from_release_to_export_and_again(course, same_public_cases, nbgrader):
+def test_a_changed_course_from_release_to_export_and_again(course, nbgrader):
     """An exercise dropped and a question added before anybody hands in; then other points; then one question more."""
     less(course.source)
     more(course.source)

@@ -151,7 +151,7 @@ def test_a_class_of_300_takes_little_memory(course, work, tmp_path, slow):
             for name, content in downloads.canvas({student: [Attempt(mine)]}).items():
                 made.writestr(name, content)
     code = (
-        "import sys; from autograder.commands import run; code = run(sys.argv[1:]);"
+        "import sys; from autograder.command_line import run; code = run(sys.argv[1:]);"
         "print(open('/proc/self/status').read()); sys.exit(code)"
     )
     command = [sys.executable, "-c", code, "collect", tmp_path / "a.zip"]

@@ -20,7 +20,7 @@ from transform_lab.judging.kinds import KINDS, TOLERANCE
 
 from autograder.exercises import EXERCISES, PUBLIC_SEED, key
 from autograder.exercises.cases import either_sign, half_turn
-from autograder.handout.exercises_page import PAGE, PICTURE, page, picture
+from autograder.handout.exercises_page import PAGE, PICTURE, earned, page, picture
 
 pytestmark = pytest.mark.filterwarnings("ignore:the matrix subclass")  # np.matrix, which students still use
 
@@ -57,9 +57,10 @@ def test_reference_is_right(name, seed):
 
 
 @every_exercise
-def test_misconceptions_say_their_own_sentences(name):
-    for misconception in EXERCISES[name].misconceptions:
+def test_misconceptions_say_their_own_sentences_and_earn_what_the_page_says(name):
+    for index, misconception in enumerate(EXERCISES[name].misconceptions):
         verdict = judged(name, misconception.wrong)
+        assert earned(EXERCISES[name], key_of(name), index) == int(round(100 * verdict.credit, 9))
         assert verdict.misconceptions == tuple(misconception.id.split(";"))
         assert (verdict.says, verdict.hint) == (misconception.says, misconception.hint)
 

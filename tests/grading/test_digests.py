@@ -172,6 +172,30 @@ def test_what_was_worked_out_is_remembered_for_the_same_files_alone(course, monk
     assert digests.of_grades(course, Limits()) != before
 
 
+@pytest.mark.parametrize("changes", ["nothing", "before", "meanwhile"])
+def test_what_is_remembered_was_made_of_these_files(course, changes):
+    file, path, made = course.root / "__pycache__" / "made.json", course.package / "tft.py", []
+
+    def change():
+        path.write_text(path.read_text() + "\nANOTHER = 1\n")
+
+    def make(files):
+        if changes == "meanwhile" and not made:
+            change()
+        made.append(files.modules["transform_lab.tft"].decode())
+        return len(made[-1])
+
+    first = digests.remembered(file, course.package, make)
+    if changes == "before":
+        change()
+    assert digests.remembered(file, course.package, make) == first + (
+        0 if changes == "nothing" else len("\nANOTHER = 1\n")
+    )
+    assert len(made) == (1 if changes == "nothing" else 2)
+    file.write_text("{")
+    assert digests.remembered(file, course.package, make) == len(path.read_text())
+
+
 # --- with real submissions --------------------------------------------------------------------------------------------
 
 

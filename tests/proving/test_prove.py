@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from support import MADE_AT_RUN_TIME, ROOT
 
-from autograder.commands import run
+from autograder.command_line import run
 from autograder.course import Course
 from autograder.exercises import EXERCISES
 from autograder.proving import search

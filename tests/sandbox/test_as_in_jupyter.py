@@ -83,7 +83,7 @@ def in_sandbox(sandboxed):
     """The same of the sandbox."""
 
     def run(sources, expected=frozenset()):
-        with Sandbox(PACKAGE, HANDED_IN, PATIENT) as box, box.notebook(cells=expected) as process:
+        with Sandbox(PACKAGE, HANDED_IN, PATIENT) as box, box.notebook(cells=sources, expected=expected) as process:
             for source in sources:
                 if source.strip():  # nbclient passes over the others, and so does the grader
                     try:

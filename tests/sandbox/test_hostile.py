@@ -149,7 +149,7 @@ CHECKS = [
         answers.agree = verdict.agree = lambda *a: True
         answers.TOLERANCE = 1e9
         diagnosis.constant = verdict.constant = lambda *a: False
-        verdict._credit = lambda *a: 1.0
+        verdict.credit = lambda *a: 1.0
         verdict.Verdict.right = property(lambda self: True)
         """,
     ),

@@ -107,6 +107,22 @@ def test_figures_are_shown_at_the_end_of_the_cell(sandbox):
     assert "image/png" in outputs[0]["data"]
 
 
+LOADED = "import sys; sorted({'matplotlib', 'scipy'} & set(sys.modules))"
+
+
+@pytest.mark.parametrize("files, cells, loaded", [
+    ({}, [LOADED], "['matplotlib', 'scipy']"),
+    ({"helper.py": b"from scipy.spatial import transform"}, ["1"], "['matplotlib', 'scipy']"),
+    ({"helper.py": b"import numpy", "data.bin": bytes(range(256))}, ["import numpy"], "[]"),
+])  # fmt: skip
+def test_scipy_and_matplotlib_are_loaded_for_those_who_use_them(sandboxed, files, cells, loaded):
+    with Sandbox(PACKAGE, files) as box:
+        for given in (cells, cells, [], cells):  # both kinds go on side by side
+            with box.notebook(cells=given, expected=frozenset({"n = 1\nn"})) as notebook:
+                shown = [notebook.run_cell(source).outputs[0]["data"]["text/plain"] for source in (LOADED, "n = 1\nn")]
+                assert shown == [loaded if given or files else "[]", "1"]
+
+
 def test_a_function_is_called_with_plain_data(sandbox):
     with sandbox.notebook() as notebook:
         notebook.run_cell("def double(x, times=2):\n    print('noise')\n    return x * times")

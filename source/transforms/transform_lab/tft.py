@@ -27,7 +27,7 @@ Of q and -q, and of the angles that describe one and the same rotation, the one 
 has beside the functions below (cameras' projections, shears, crystals, an arcball) is not here.
 
 Source: names, signatures and conventions follow C. Gohlke's ``transformations.py`` as shipped with ROS 1; rotation
-arithmetic is SciPy's ``Rotation``.
+arithmetic is SciPy's ``Rotation``, or the same without loading it (arithmetic.py).
 """
 
 import math
@@ -35,6 +35,7 @@ import warnings
 
 import numpy as np
 
+from .arithmetic import Rotation, matrix_of, quaternion_of, turn, vector_of
 from .validation import numbers, rigid_transform, shape_text
 
 __all__ = [
@@ -49,17 +50,10 @@ __all__ = [
 _EPS = np.finfo(float).eps * 4.0  # below this squared length, ROS takes a quaternion for zero
 
 
-def _rotation():
-    """Return SciPy's Rotation, imported at its first use: the import takes longer than all the rest of this package."""
-    from scipy.spatial.transform import Rotation
-
-    return Rotation
-
-
-def _matrix(rotation):
-    """Return a SciPy Rotation as a 4x4 matrix."""
+def _matrix(R):
+    """Return a 3x3 rotation as a 4x4 matrix."""
     T = np.eye(4)
-    T[:3, :3] = rotation.as_matrix()
+    T[:3, :3] = R
     return T
 
 
@@ -120,8 +114,8 @@ def rotation_matrix(angle, direction, point=None):
     The axis goes through `point`, by default through the origin. `direction` may have any length but zero.
     """
     axis = unit_vector(_vector(direction, "rotation_matrix: the direction"))
-    rotation = _rotation().from_rotvec(_number(angle, "rotation_matrix: the angle") * axis)
-    return _keeping(rotation.as_matrix(), point, "rotation_matrix: the point")
+    R = turn(_number(angle, "rotation_matrix: the angle") * axis)
+    return _keeping(R, point, "rotation_matrix: the point")
 
 
 def rotation_from_matrix(matrix):
@@ -132,7 +126,7 @@ def rotation_from_matrix(matrix):
     """
     T = rigid_transform(matrix, "rotation_from_matrix: the matrix")
     R, t = T[:3, :3], T[:3, 3]
-    rotation_vector = _rotation().from_matrix(R).as_rotvec()
+    rotation_vector = vector_of(R)
     angle = np.linalg.norm(rotation_vector)
     axis = rotation_vector / angle if angle > 0 else np.array([0.0, 0.0, 1.0])
     point = np.linalg.lstsq(np.eye(3) - R, t, rcond=1e-8)[0]
@@ -256,7 +250,7 @@ def superimposition_matrix(v0, v1, scaling=False, usesvd=True):
     first, second = (v[:3].T - middle for v, middle in zip((v0, v1), middles))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of points in a line, which do not say how far they are turned about it
-        linear = _rotation().align_vectors(second, first)[0].as_matrix()
+        linear = Rotation.align_vectors(second, first)[0].as_matrix()
     if scaling:
         linear *= math.sqrt(np.sum(second**2) / np.sum(first**2))
     T = np.eye(4)
@@ -289,7 +283,7 @@ def _from_euler(ai, aj, ak, axes, what):
     frame, sequence = _axes(axes)
     angles = [_number(angle, f"{what}: {name}") for angle, name in ((ai, "ai"), (aj, "aj"), (ak, "ak"))]
     # SciPy's name for the axes: lower case about fixed ones, upper case about the moving frame's
-    return _rotation().from_euler(sequence if frame == "s" else sequence.upper(), angles)
+    return Rotation.from_euler(sequence if frame == "s" else sequence.upper(), angles)
 
 
 def _euler(R, axes):
@@ -316,7 +310,7 @@ def _euler(R, axes):
 
 def euler_matrix(ai, aj, ak, axes="sxyz"):
     """Return the 4x4 rotation by the angles `ai`, `aj`, `ak` (radians) about `axes`, in this order."""
-    return _matrix(_from_euler(ai, aj, ak, axes, "euler_matrix"))
+    return _matrix(_from_euler(ai, aj, ak, axes, "euler_matrix").as_matrix())
 
 
 def euler_from_matrix(matrix, axes="sxyz"):
@@ -354,7 +348,7 @@ def quaternion_matrix(quaternion):
     q = numbers(quaternion, "quaternion_matrix: the quaternion", lengths=(4,))
     if q @ q < _EPS:
         return np.eye(4)
-    return _matrix(_rotation().from_quat(q))
+    return _matrix(matrix_of(q))
 
 
 def quaternion_from_matrix(matrix):
@@ -363,7 +357,7 @@ def quaternion_from_matrix(matrix):
     Raises ValueError unless the matrix is 4x4 and a rigid transform (to 1e-3), naming the property that fails.
     """
     R = rigid_transform(matrix, "quaternion_from_matrix: the matrix")[:3, :3]
-    q = _rotation().from_matrix(R).as_quat()
+    q = quaternion_of(R)
     positive = 3 if np.trace(R) > 0 else int(np.argmax(np.diag(R)))  # in ROS; q and -q are the same orientation
     return q if q[positive] >= 0 else -q
 

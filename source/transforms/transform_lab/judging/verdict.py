@@ -132,7 +132,7 @@ def examine(
     verdict = Verdict(
         name,
         "error" if all(reply.outcome == "raised" for reply in replies) else "graded",
-        credit=_credit(exercise, cases, outcomes),
+        credit=credit(exercise, cases, outcomes),
         parts={part: sum(part in outcome.parts for outcome in outcomes) for part in KINDS[returns].parts},
         cases=len(cases),
         returns=returns,
@@ -244,7 +244,7 @@ def _parts_of_right(returns, answer):
     return parts_of(returns, codec.decode(answer.value))
 
 
-def _credit(exercise: PlainExercise, cases: list[PlainCase], outcomes: list[Outcome]) -> float:
+def credit(exercise: PlainExercise, cases: list[PlainCase], outcomes: list[Outcome]) -> float:
     """Each family of cases counts by its weight; within it, a part earns its share when it is right in every case.
 
     A family in which a call changed its arguments earns half of that: the numbers are right, the function is of no use yet.
