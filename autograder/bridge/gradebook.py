@@ -68,6 +68,34 @@ def opened(course):
         ) from None
 
 
+def grades(gradebook, *only):
+    """What students are told of their points, {student: {notebook: NotebookGrades}}, in three queries.
+
+    only: SQLAlchemy's conditions, such as `SubmittedAssignment.student_id == "ada"`
+    """
+    found = {}
+
+    def of(table, *columns):
+        whose = select(SubmittedAssignment.student_id, Notebook.name, *columns).select_from(table)
+        if table is not SubmittedNotebook:
+            whose = whose.join(SubmittedNotebook, SubmittedNotebook.id == table.notebook_id)
+            whose = whose.join(BaseCell, BaseCell.id == table.cell_id)
+        whose = whose.join(SubmittedAssignment, SubmittedAssignment.id == SubmittedNotebook.assignment_id)
+        whose = whose.join(Assignment, Assignment.id == SubmittedAssignment.assignment_id)
+        whose = whose.join(Notebook, Notebook.id == SubmittedNotebook.notebook_id)
+        for student, notebook, *values in gradebook.db.execute(whose.where(Assignment.name == ASSIGNMENT, *only)):
+            yield found.setdefault(student, {}).setdefault(notebook, NotebookGrades()), *values
+
+    for told, penalty in of(SubmittedNotebook, SubmittedNotebook.late_submission_penalty):
+        told.penalty = penalty or 0.0
+    for told, cell, *points in of(Grade, BaseCell.name, Grade.score, Grade.max_score, Grade.needs_manual_grade):
+        told.cells[cell] = CellGrade(*points)
+    for told, cell, comment in of(Comment, BaseCell.name, Comment.comment):
+        if comment:
+            told.comments[cell] = comment
+    return found
+
+
 class Writer:
     """Records Graded submissions; a context manager that holds the gradebook open."""
 
@@ -128,28 +156,8 @@ class Writer:
         replace(path, table(rows))
 
     def grades(self):
-        """What students are told of their points, {student: {notebook: NotebookGrades}}, in three queries for the whole class."""
-        found = {}
-
-        def of(table, *columns):
-            whose = select(SubmittedAssignment.student_id, Notebook.name, *columns).select_from(table)
-            if table is not SubmittedNotebook:
-                whose = whose.join(SubmittedNotebook, SubmittedNotebook.id == table.notebook_id)
-                whose = whose.join(BaseCell, BaseCell.id == table.cell_id)
-            whose = whose.join(SubmittedAssignment, SubmittedAssignment.id == SubmittedNotebook.assignment_id)
-            whose = whose.join(Assignment, Assignment.id == SubmittedAssignment.assignment_id)
-            whose = whose.join(Notebook, Notebook.id == SubmittedNotebook.notebook_id)
-            for student, notebook, *values in self.gradebook.db.execute(whose.where(Assignment.name == ASSIGNMENT)):
-                yield found.setdefault(student, {}).setdefault(notebook, NotebookGrades()), *values
-
-        for grades, penalty in of(SubmittedNotebook, SubmittedNotebook.late_submission_penalty):
-            grades.penalty = penalty or 0.0
-        for grades, cell, *points in of(Grade, BaseCell.name, Grade.score, Grade.max_score, Grade.needs_manual_grade):
-            grades.cells[cell] = CellGrade(*points)
-        for grades, cell, comment in of(Comment, BaseCell.name, Comment.comment):
-            if comment:
-                grades.comments[cell] = comment
-        return found
+        """What students are told of their points, {student: {notebook: NotebookGrades}}."""
+        return grades(self.gradebook)
 
     def remove(self, student):
         """Forget a student and all that was made for them."""

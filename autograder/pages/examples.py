@@ -1,7 +1,7 @@
 """What a mistake looks like, as a piece of a page: one that is known by name, and one that a student made."""
 
 import json
-from functools import cache
+from functools import cache, lru_cache
 
 import numpy as np
 from transform_lab.judging import comparison, panel
@@ -27,6 +27,7 @@ def of_misconception(name, identifier):
     return scene.still() if scene else panel.example(verdict)
 
 
+@lru_cache(maxsize=500)  # students share mistakes, and a picture takes as long as a page
 def of_answer(name, text):
     """What public_example.find found, a public case and a student's answer to it, as a piece of a page.
 
