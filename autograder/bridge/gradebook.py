@@ -33,7 +33,8 @@ from ..grading.records import ALONE
 from ..intake.submission import TIMESTAMP
 from ..names import table
 from . import registration
-from .nbgrader_api import db_url, settings
+from .nbgrader_api import db_url
+from .settings import settings
 
 EXPORTED = (
     *("assignment", "duedate", "timestamp", "student_id", "last_name", "first_name", "email"),

@@ -11,17 +11,13 @@ from nbgrader.apps.baseapp import NbGrader
 from nbgrader.converters import GenerateFeedback
 from nbgrader.coursedir import CourseDirectory
 from nbgrader.exchange.default import Exchange
-from traitlets.config import Config, PyFileConfigLoader
+from traitlets.config import Config
 
 from ..course import ASSIGNMENT, CourseError
+from .settings import settings
 
 logger = logging.getLogger("traitlets")  # nbgrader's; a failure is told by ours, and so is progress
 logger.addHandler(logging.NullHandler())  # or Python would print what nobody handles
-
-
-def settings(course):
-    """nbgrader's configuration of this course: database, late penalties and what else nbgrader_config.py sets."""
-    return PyFileConfigLoader("nbgrader_config.py", path=str(course.root)).load_config()
 
 
 def db_url(course):
@@ -64,7 +60,6 @@ class FeedbackPages(GenerateFeedback):
         config.merge(Config(GenerateFeedback={"force": True}, HTMLExporter={"template_name": "feedback"}))
         config.merge(changed or {})
         super().__init__(CourseDirectory(config=config, assignment_id=ASSIGNMENT), config=config)
-        self.writer = FilesWriter(parent=self, config=self.config)
         self.exporter = self.exporter_class(parent=self, config=self.config)
         for step in self.preprocessors:
             self.exporter.register_preprocessor(step)
@@ -72,6 +67,7 @@ class FeedbackPages(GenerateFeedback):
     def make(self, student, grades):
         """Write the pages of a student with these {notebook: NotebookGrades}; raises and returns as `call` does."""
         self.coursedir.student_id, self.grades = student, grades
+        self.writer = FilesWriter(parent=self, config=self.config)  # it makes the folder once
         with _reasons() as reasons:
             try:
                 self.init_notebooks()
