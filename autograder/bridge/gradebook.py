@@ -125,7 +125,8 @@ class Writer:
 
     def students(self):
         """Those who have a submission in the gradebook."""
-        return {submission.student_id for submission in self.gradebook.assignment_submissions(ASSIGNMENT)}
+        asked = select(SubmittedAssignment.student_id).join(Assignment).where(Assignment.name == ASSIGNMENT)
+        return set(self.gradebook.db.scalars(asked))
 
     def record(self, graded):
         """Write one Graded: first the marks, then the files, whose records say that all is done."""
@@ -145,15 +146,23 @@ class Writer:
     def export(self, path):
         """Write the grades as `nbgrader export` does, but in one order, and so that a name stays in its cell, and is not run."""
         assignment = self.gradebook.find_assignment(ASSIGNMENT)
-        done = {submission.student_id: submission for submission in self.gradebook.assignment_submissions(ASSIGNMENT)}
+        most, due = assignment.max_score, assignment.duedate
+        of = SubmittedAssignment
+        asked = self.gradebook.db.execute(
+            select(of.student_id, of.id, of.timestamp).where(of.assignment_id == assignment.id)
+        )
+        done = {student: values for student, *values in asked}
         rows = [EXPORTED]
         for who in sorted(self.gradebook.students, key=lambda who: (who.last_name or "", who.first_name or "", who.id)):
             when, points, penalty = None, 0.0, 0.0
-            if found := done.get(who.id):
-                when, points, penalty = found.timestamp, found.score, found.late_submission_penalty or 0.0
+            if who.id in done:
+                identifier, when = done[who.id]
+                # For each by itself, as nbgrader asks, or SQLite would add the points up in another order.
+                of_one = select(of.score, of.late_submission_penalty).where(of.id == identifier)
+                points, penalty = self.gradebook.db.execute(of_one).one()
             told = who.id, who.last_name, who.first_name, who.email
             total = max(0.0, points - penalty)
-            rows.append((ASSIGNMENT, assignment.duedate, when, *told, points, penalty, total, assignment.max_score))
+            rows.append((ASSIGNMENT, due, when, *told, points, penalty, total, most))
         replace(path, table(rows))
 
     def grades(self):
