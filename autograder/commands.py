@@ -166,13 +166,10 @@ def prove(options):
 
 
 def grade(options):
-    from .sandbox import ForkServer
+    from .bridge.settings import settings
+    from .grading import settled
 
     here = course()
-    ForkServer.serving(here.package)  # loads while the rest is loaded here
-    from .bridge import gradebook  # noqa: F401 (takes as long as the fork server's start)
-    from .grading.workers import Cluster
-
     students = here.students()
     chosen = list(dict.fromkeys(options.students)) or students
     unknown = [student for student in chosen if student not in students]
@@ -183,6 +180,21 @@ def grade(options):
     astray = {} if options.students else here.astray()
     for name, what_to_do in astray.items():
         errors.print(f"{name if name.isprintable() else repr(name)}: not graded: {what_to_do}.", markup=False)
+    if chosen == students and not (
+        options.force or options.scheduler or options.unsafe_no_sandbox or options.seed is not None
+    ):
+        with here.one_grader_at_a_time(_busy):
+            table = settled.table(here, students, settings(here))
+        if table is not None:
+            _say_all(here, table, graded=0, unchanged=len(students), seed=None)
+            return 1 if any(map(odd, astray)) else 0
+
+    from .sandbox import ForkServer
+
+    ForkServer.serving(here.package)  # loads while the rest is loaded here
+    from .bridge import gradebook  # noqa: F401 (takes as long as the fork server's start)
+    from .grading.workers import Cluster
+
     with Cluster(options.scheduler) if options.scheduler else nullcontext() as cluster:
         if exposed := cluster.unprotected() if cluster else []:
             errors.print(OPEN_TO_THE_NETWORK.format(escape(", ".join(exposed))))
@@ -216,23 +228,28 @@ def _protection(here, unsafe, cluster=None):
 def _grade(here, students, protected, seed=None, jobs=os.cpu_count(), force=False, with_feedback=True, cluster=None):
     """Grade, record, write feedback and report; returns the students of whom something could not be done."""
     from .bridge.gradebook import Writer
+    from .grading import settled
     from .grading.classroom import grade_class
     from .grading.grade import grading_run, new_seed
     from .pages import report
 
     seed = new_seed() if seed is None else seed
-    failed, without_feedback, fresh, counts = [], [], [], Counter()
+    failed, unsettled, without_feedback, fresh, counts = [], [], [], [], Counter()
     with here.one_grader_at_a_time(_busy), Writer(here) as writer:
         writer.can_record()
+        looks = settled.Looks(here, writer.db_url)
+        looks.take()
         against = grading_run(here, seed, isolated=protected)
         with _progress() as progress:
             bar = progress.add_task("grading", total=len(students), counts="")
             for student, graded, problem in grade_class(here, students, against, writer, jobs, force, cluster):
                 if problem:
                     failed.append(student)
+                    unsettled.append(student)
                     progress.console.print(f"{student}: not graded: {problem}", markup=False)
                 if graded:
                     fresh.append(student)
+                    unsettled += [] if graded.final else [student]
                     counts.update(row.status for row in graded.rows)
                     for line in graded.problems:
                         progress.console.print(f"{student}: {line}", markup=False)
@@ -241,15 +258,26 @@ def _grade(here, students, protected, seed=None, jobs=os.cpu_count(), force=Fals
                 said += f", {len(failed)} failed" if failed else ""
                 said += "".join(f", {count} {status}" for status, count in counts.items() if status != "graded")
                 progress.update(bar, advance=1, counts=said)
+        looks.take()
         if with_feedback:
             grades = writer.grades()
             wanted = {name: grades[name] for name in students if name not in failed and name in grades}
-            without_feedback = _write_feedback(here, wanted, jobs)
+            without_feedback, told = _write_feedback(here, wanted, jobs)
+            unsettled += told
         found = report.write(here, writer)
-    _show_class(found, students)
-    unchanged = len(students) - len(fresh) - len(failed)
-    drawn = f" (hidden cases drawn from seed {seed})" if fresh else ""
-    console.print(f"{len(fresh)} graded{drawn}, {unchanged} unchanged.")
+        table = _table(found, students)
+        looks.take()
+        if with_feedback and not unsettled and students == here.students():
+            looks.keep(students, writer.config, fresh, table)
+    _say_all(here, table, len(fresh), len(students) - len(fresh) - len(failed), seed)
+    return failed + without_feedback
+
+
+def _say_all(here, table, graded, unchanged, seed):
+    """What came of a run."""
+    _show_class(table)
+    drawn = f" (hidden cases drawn from seed {seed})" if graded else ""
+    console.print(f"{graded} graded{drawn}, {unchanged} unchanged.")
     for what, where in (
         ("class report", here.reports / "index.html"),
         ("every verdict", here.reports / "verdicts.csv"),
@@ -257,24 +285,24 @@ def _grade(here, students, protected, seed=None, jobs=os.cpu_count(), force=Fals
         ("gradebook", here.gradebook),
     ):
         console.print(f"  {what:14} {where.relative_to(here.root)}", markup=False)
-    return failed + without_feedback
 
 
 def _write_feedback(here, grades, jobs):
-    """Make the pages that are missing or out of date; returns the students who could not get theirs."""
+    """Make the pages that are missing or out of date; (students who could not get theirs, those of whom there is more to say)"""
     from .pages import feedback
 
-    failed = []
+    failed, told = [], []
     wanted = {student: told for student, told in grades.items() if not feedback.is_complete(here, student, told)}
     with _progress() as progress:
         bar = progress.add_task("feedback", total=len(wanted), counts="")
         for student, problem in feedback.generate(here, wanted, jobs):
             progress.advance(bar)
             if problem:
+                told.append(student)
                 progress.console.print(f"{student}: {problem}", markup=False)
             if not (here.feedback(student) / feedback.SUMMARY).is_file():
                 failed.append(student)
-    return failed
+    return failed, told
 
 
 def _busy():
@@ -303,18 +331,23 @@ def _add_row(table, *cells):
     table.add_row(*(Text(cell) for cell in cells))
 
 
-def _show_class(found, students):
-    table = Table("student", "points", "misconceptions and what needs a look", box=None, pad_edge=False)
-    for student in students:
-        rows = found.get(student)
-        if rows is None:
-            continue
+def _table(found, students):
+    """[(student, points, what needs a look)], in words, of those who have {student: [Row]}."""
+    table = []
+    for student in [student for student in students if student in found]:
+        rows, said = found[student], {}
         points = f"{sum(row.score for row in rows):g} of {sum(row.max_score for row in rows):g}"
-        said = {}
         for row in rows:
             if row.remark:
                 said.setdefault(row.remark, []).append(row.exercise)
-        _add_row(table, student, points, "; ".join(f"{what} ({', '.join(names)})" for what, names in said.items()))
+        table.append([student, points, "; ".join(f"{what} ({', '.join(names)})" for what, names in said.items())])
+    return table
+
+
+def _show_class(rows):
+    table = Table("student", "points", "misconceptions and what needs a look", box=None, pad_edge=False)
+    for cells in rows:
+        _add_row(table, *cells)
     console.print(table)
 
 
@@ -325,7 +358,7 @@ def report(options):
     here = course()
     with Writer(here) as writer:
         found = report.write(here, writer)
-    _show_class(found, found)
+    _show_class(_table(found, found))
     console.print(f"{here.reports.relative_to(here.root)}/index.html, verdicts.csv and grades.csv are written.")
     return 0
 

@@ -23,7 +23,7 @@ from nbgrader.coursedir import CourseDirectory
 from transform_lab.judging.calling import call
 from transform_lab.judging.verdict import examine
 
-from autograder.bridge.nbgrader_api import settings
+from autograder.bridge.settings import settings
 from autograder.course import ASSIGNMENT, Course
 from autograder.exercises import EXERCISES, PUBLIC_SEED, key
 from autograder.pages.markdown import markdown2html

@@ -33,7 +33,8 @@ from ..grading.records import ALONE
 from ..intake.submission import TIMESTAMP
 from ..names import table
 from . import registration
-from .nbgrader_api import db_url, settings
+from .nbgrader_api import db_url
+from .settings import settings
 
 EXPORTED = (
     *("assignment", "duedate", "timestamp", "student_id", "last_name", "first_name", "email"),
@@ -68,6 +69,34 @@ def opened(course):
         ) from None
 
 
+def grades(gradebook, *only):
+    """What students are told of their points, {student: {notebook: NotebookGrades}}, in three queries.
+
+    only: SQLAlchemy's conditions, such as `SubmittedAssignment.student_id == "ada"`
+    """
+    found = {}
+
+    def of(table, *columns):
+        whose = select(SubmittedAssignment.student_id, Notebook.name, *columns).select_from(table)
+        if table is not SubmittedNotebook:
+            whose = whose.join(SubmittedNotebook, SubmittedNotebook.id == table.notebook_id)
+            whose = whose.join(BaseCell, BaseCell.id == table.cell_id)
+        whose = whose.join(SubmittedAssignment, SubmittedAssignment.id == SubmittedNotebook.assignment_id)
+        whose = whose.join(Assignment, Assignment.id == SubmittedAssignment.assignment_id)
+        whose = whose.join(Notebook, Notebook.id == SubmittedNotebook.notebook_id)
+        for student, notebook, *values in gradebook.db.execute(whose.where(Assignment.name == ASSIGNMENT, *only)):
+            yield found.setdefault(student, {}).setdefault(notebook, NotebookGrades()), *values
+
+    for told, penalty in of(SubmittedNotebook, SubmittedNotebook.late_submission_penalty):
+        told.penalty = penalty or 0.0
+    for told, cell, *points in of(Grade, BaseCell.name, Grade.score, Grade.max_score, Grade.needs_manual_grade):
+        told.cells[cell] = CellGrade(*points)
+    for told, cell, comment in of(Comment, BaseCell.name, Comment.comment):
+        if comment:
+            told.comments[cell] = comment
+    return found
+
+
 class Writer:
     """Records Graded submissions; a context manager that holds the gradebook open."""
 
@@ -96,7 +125,8 @@ class Writer:
 
     def students(self):
         """Those who have a submission in the gradebook."""
-        return {submission.student_id for submission in self.gradebook.assignment_submissions(ASSIGNMENT)}
+        asked = select(SubmittedAssignment.student_id).join(Assignment).where(Assignment.name == ASSIGNMENT)
+        return set(self.gradebook.db.scalars(asked))
 
     def record(self, graded):
         """Write one Graded: first the marks, then the files, whose records say that all is done."""
@@ -116,40 +146,28 @@ class Writer:
     def export(self, path):
         """Write the grades as `nbgrader export` does, but in one order, and so that a name stays in its cell, and is not run."""
         assignment = self.gradebook.find_assignment(ASSIGNMENT)
-        done = {submission.student_id: submission for submission in self.gradebook.assignment_submissions(ASSIGNMENT)}
+        most, due = assignment.max_score, assignment.duedate
+        of = SubmittedAssignment
+        asked = self.gradebook.db.execute(
+            select(of.student_id, of.id, of.timestamp).where(of.assignment_id == assignment.id)
+        )
+        done = {student: values for student, *values in asked}
         rows = [EXPORTED]
         for who in sorted(self.gradebook.students, key=lambda who: (who.last_name or "", who.first_name or "", who.id)):
             when, points, penalty = None, 0.0, 0.0
-            if found := done.get(who.id):
-                when, points, penalty = found.timestamp, found.score, found.late_submission_penalty or 0.0
+            if who.id in done:
+                identifier, when = done[who.id]
+                # For each by itself, as nbgrader asks, or SQLite would add the points up in another order.
+                of_one = select(of.score, of.late_submission_penalty).where(of.id == identifier)
+                points, penalty = self.gradebook.db.execute(of_one).one()
             told = who.id, who.last_name, who.first_name, who.email
             total = max(0.0, points - penalty)
-            rows.append((ASSIGNMENT, assignment.duedate, when, *told, points, penalty, total, assignment.max_score))
+            rows.append((ASSIGNMENT, due, when, *told, points, penalty, total, most))
         replace(path, table(rows))
 
     def grades(self):
-        """What students are told of their points, {student: {notebook: NotebookGrades}}, in three queries for the whole class."""
-        found = {}
-
-        def of(table, *columns):
-            whose = select(SubmittedAssignment.student_id, Notebook.name, *columns).select_from(table)
-            if table is not SubmittedNotebook:
-                whose = whose.join(SubmittedNotebook, SubmittedNotebook.id == table.notebook_id)
-                whose = whose.join(BaseCell, BaseCell.id == table.cell_id)
-            whose = whose.join(SubmittedAssignment, SubmittedAssignment.id == SubmittedNotebook.assignment_id)
-            whose = whose.join(Assignment, Assignment.id == SubmittedAssignment.assignment_id)
-            whose = whose.join(Notebook, Notebook.id == SubmittedNotebook.notebook_id)
-            for student, notebook, *values in self.gradebook.db.execute(whose.where(Assignment.name == ASSIGNMENT)):
-                yield found.setdefault(student, {}).setdefault(notebook, NotebookGrades()), *values
-
-        for grades, penalty in of(SubmittedNotebook, SubmittedNotebook.late_submission_penalty):
-            grades.penalty = penalty or 0.0
-        for grades, cell, *points in of(Grade, BaseCell.name, Grade.score, Grade.max_score, Grade.needs_manual_grade):
-            grades.cells[cell] = CellGrade(*points)
-        for grades, cell, comment in of(Comment, BaseCell.name, Comment.comment):
-            if comment:
-                grades.comments[cell] = comment
-        return found
+        """What students are told of their points, {student: {notebook: NotebookGrades}}."""
+        return grades(self.gradebook)
 
     def remove(self, student):
         """Forget a student and all that was made for them."""

@@ -2,23 +2,22 @@
 
 import logging
 import sys
+from contextlib import chdir, contextmanager
 from pathlib import Path
 
+from nbconvert.writers import FilesWriter
 from nbgrader.apps import NbGraderAPI
 from nbgrader.apps.baseapp import NbGrader
+from nbgrader.converters import GenerateFeedback
 from nbgrader.coursedir import CourseDirectory
 from nbgrader.exchange.default import Exchange
-from traitlets.config import PyFileConfigLoader
+from traitlets.config import Config
 
-from ..course import CourseError
+from ..course import ASSIGNMENT, CourseError
+from .settings import settings
 
 logger = logging.getLogger("traitlets")  # nbgrader's; a failure is told by ours, and so is progress
 logger.addHandler(logging.NullHandler())  # or Python would print what nobody handles
-
-
-def settings(course):
-    """nbgrader's configuration of this course: database, late penalties and what else nbgrader_config.py sets."""
-    return PyFileConfigLoader("nbgrader_config.py", path=str(course.root)).load_config()
 
 
 def db_url(course):
@@ -33,25 +32,67 @@ def exchange(course):
     return Path(Exchange(config=app.config, coursedir=app.coursedir).root), app.coursedir.course_id
 
 
-def call(course, command, *arguments, changed=None):
-    """Run a method of nbgrader's API, such as "generate_feedback"; raises CourseError with the reason when it fails.
+def call(course, command, *arguments):
+    """Run a method of nbgrader's API, such as "generate_assignment"; raises CourseError with the reason when it fails.
 
-    changed: traitlets' Config of settings that are others than the course's this time
     Returns what nbgrader told of as an error and went on, in words.
     """
     config = settings(course)
-    config.merge(changed or {})
     api = NbGraderAPI(CourseDirectory(config=config), config=config)
-    reasons = _Reasons(logging.ERROR)
-    logger.addHandler(reasons)
-    try:
+    with _reasons() as reasons:
         result = getattr(api, command)(*arguments, force=True)
-    finally:
-        logger.removeHandler(reasons)
     if not result["success"]:
         lines = (result.get("error") or result.get("log") or "").strip().splitlines()
         raise CourseError(reasons.words() or (lines[-1] if lines else "no reason given")) from reasons.first
     return reasons.words()
+
+
+class FeedbackPages(GenerateFeedback):
+    """nbgrader's generate_feedback for one student after the other.
+
+    Its exporter is made once, and is told the grades: to read the settings, make it, and ask the gradebook for every cell
+    takes as long as the pages.
+    """
+
+    def __init__(self, course, changed=None):
+        """changed: traitlets' Config of settings that are others than the course's this time"""
+        config = settings(course)
+        config.merge(Config(GenerateFeedback={"force": True}, HTMLExporter={"template_name": "feedback"}))
+        config.merge(changed or {})
+        super().__init__(CourseDirectory(config=config, assignment_id=ASSIGNMENT), config=config)
+        self.exporter = self.exporter_class(parent=self, config=self.config)
+        for step in self.preprocessors:
+            self.exporter.register_preprocessor(step)
+
+    def make(self, student, grades):
+        """Write the pages of a student with these {notebook: NotebookGrades}; raises and returns as `call` does."""
+        self.coursedir.student_id, self.grades = student, grades
+        self.writer = FilesWriter(parent=self, config=self.config)  # it makes the folder once
+        with _reasons() as reasons:
+            try:
+                self.init_notebooks()
+                with chdir(self.coursedir.root):
+                    self.convert_notebooks()
+            except (Exception, SystemExit) as error:
+                raise CourseError(reasons.words() or _short(f"{type(error).__name__}: {error}")) from (
+                    reasons.first or error
+                )
+        return reasons.words()
+
+    def init_single_notebook_resources(self, notebook_filename):
+        made = super().init_single_notebook_resources(notebook_filename)
+        made["nbgrader"]["grades"] = self.grades[made["nbgrader"]["notebook"]]
+        return made
+
+
+@contextmanager
+def _reasons():
+    reasons = _Reasons(logging.ERROR)
+    logger.addHandler(reasons)
+    try:
+        yield reasons
+    finally:
+        logger.removeHandler(reasons)
 
 
 class _Reasons(logging.Handler):

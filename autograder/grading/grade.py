@@ -68,7 +68,10 @@ class GradingRun:
 
 @dataclass
 class Graded:
-    """The result: a Row for each exercise, the graded notebooks as text, and what was odd, in words."""
+    """The result: a Row for each exercise, the graded notebooks as text, and what was odd, in words.
+
+    final: False where the next `grade` tries again
+    """
 
     student: str
     rows: list[Row] = field(default_factory=list)
@@ -77,6 +80,7 @@ class Graded:
     problems: list[str] = field(default_factory=list)
     receipts: dict[str, str] = field(default_factory=dict)  # {file name: text}, see submission.receipts
     record: dict = field(default_factory=dict)  # of the submission, where there is no notebook that could hold it
+    final: bool = True
 
     def add(
         self, released: Released, intake: Intake, verdicts: dict[str, Verdict], written: tuple[str, "Marks"]
@@ -130,7 +134,7 @@ def not_judged(course: Course, student: str, run: GradingRun, why: str) -> Grade
     """
     folder = course.submitted(student)
     there = [name for name in run.released if os.path.lexists(folder / f"{name}.ipynb")] or list(run.released)
-    graded = Graded(student, receipts=receipts(folder)[0])
+    graded = Graded(student, receipts=receipts(folder)[0], final=False)
     with run.sandbox(empty := Submission(student, {})) as sandbox:
         for name, released in run.released.items():
             if name in there:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from nbgrader.nbgraderformat import MetadataValidator, SchemaTooNewError, SchemaTooOldError, ValidationError
 from nbgrader.preprocessors import ClearSolutions
 
-from ..bridge.nbgrader_api import settings
+from ..bridge.settings import settings
 from ..course import ASSIGNMENT, CourseError
 from ..exercises import EXERCISES
 from ..released import POINTS, NotANotebook, read

@@ -1,6 +1,5 @@
 """How much of what students wrote and displayed a page holds: what it takes to make one is in proportion to that."""
 
-import copy
 import html
 import re
 
@@ -44,7 +43,7 @@ def shortened(nb, budget):
     All that still fits is kept: first of the cells that are asked for, and then of the others, from the top. The verdicts
     are kept, but for characters of a student's in them that would set the grader's words in another order, or hide them.
     """
-    nb, left = copy.deepcopy(nb), budget
+    nb, left = nbformat.from_dict(nb), budget  # a copy, sooner than by copy.deepcopy
 
     def fits(text, weight=1, around=0):
         nonlocal left
@@ -81,7 +80,7 @@ def shortened(nb, budget):
 def bared(nb):
     """A copy of the notebook with the grader's own cells and verdicts, and a sentence in place of what is the student's."""
     cells = [nbformat.v4.new_markdown_cell(BARE)]
-    for cell in copy.deepcopy(nb.cells):
+    for cell in nbformat.from_dict(nb.cells):
         if "nbgrader" in cell.metadata:
             if not is_test(cell):
                 cell.source, cell.attachments, cell.outputs = "", {}, []

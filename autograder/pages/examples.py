@@ -1,7 +1,9 @@
 """What a mistake looks like, as a piece of a page: one that is known by name, and one that a student made."""
 
+import contextlib
 import json
-from functools import cache
+from functools import cache, lru_cache
+from pathlib import Path
 
 import numpy as np
 from transform_lab.judging import comparison, panel
@@ -9,11 +11,35 @@ from transform_lab.judging.calling import call
 from transform_lab.judging.verdict import Reply, examine
 
 from ..exercises import EXERCISES, PUBLIC_SEED, key
+from ..files import replace
+from ..grading import digests
+
+REMEMBERED = Path(__file__).parent / "__pycache__" / "examples.json"
 
 YOURS_TO_TRY = (
     "The same mistake, with numbers you can try yourself (this case is one of your notebook's <code>check</code>):"
 )
 YOUR_ANSWER = "What your function answers:"
+
+
+def of_misconceptions(course, wanted):
+    """{(exercise, id): what of_misconception makes of it} of all that are `wanted`.
+
+    A picture takes as long as ten students' rows of the report, so it is kept for as long as nothing changes that makes pages.
+    """
+    digest, known = digests.of_pages(course), {}
+    with contextlib.suppress(OSError, ValueError, LookupError, TypeError):
+        kept = json.loads(REMEMBERED.read_text(encoding="utf-8"))
+        known = {(name, identifier): str(made) for name, identifier, made in kept[digest]}
+    found = {(name, identifier): known.get((name, identifier)) for name, identifier in wanted}
+    if not (new := [example for example, made in found.items() if made is None]):
+        return found
+    for example in new:
+        known[example] = found[example] = of_misconception(*example)
+    with contextlib.suppress(OSError):  # where nothing can be written, they are made each time
+        REMEMBERED.parent.mkdir(exist_ok=True)
+        replace(REMEMBERED, json.dumps({digest: [[*example, made] for example, made in known.items()]}))
+    return found
 
 
 def of_misconception(name, identifier):
@@ -27,6 +53,7 @@ def of_misconception(name, identifier):
     return scene.still() if scene else panel.example(verdict)
 
 
+@lru_cache(maxsize=500)  # students share mistakes, and a picture takes as long as a page
 def of_answer(name, text):
     """What public_example.find found, a public case and a student's answer to it, as a piece of a page.
 

@@ -4,6 +4,8 @@ nbgrader_config.py names the exporter here, and the step before it.
 """
 
 import copy
+import hashlib
+import json
 import re
 from pathlib import Path
 
@@ -11,29 +13,71 @@ import nbformat
 from nbconvert.exporters import HTMLExporter, TemplateExporter
 from nbconvert.filters import Highlight2HTML
 from nbconvert.filters.widgetsdatatypefilter import WidgetsDataTypeFilter
-from nbgrader.preprocessors import GetGrades
+from nbgrader.api import Gradebook, Notebook, SubmittedAssignment
+from nbgrader.preprocessors import NbGraderPreprocessor
+from nbgrader.utils import is_grade, is_solution, is_task
 
+from ..bridge.gradebook import grades as grades_in
 from ..grading.judge import opinion
 from ..grading.records import RECORD, verdicts
 from . import examples
 from .bounded import LEFT_OUT as LEFT_OUT
-from .bounded import bared, is_test, shortened
+from .bounded import Bounded, bared, is_test, shortened
 from .rendering import points
 
 TEMPLATE = Path(__file__).parent / "templates" / "feedback.html.j2"
 LARGEST_PAGE = 280_000  # bytes; five of them and the summary stay below 1.5 MB
 SHOWN = (150_000, 50_000, 10_000, 0)  # bytes of a student's own cells to try, until the page is small enough
+MOST_KEPT = 30_000_000  # characters of cells' pages that are kept for the next notebooks
 NAMELESS, NO_NAME = re.compile(r"<img (?![^>]*\balt=)"), "No description has been provided for this image"
 
 
-class FetchGrades(GetGrades):
-    """nbgrader's step that fetches points and comments; it learns besides which points nobody has given yet."""
+class FetchGrades(NbGraderPreprocessor):
+    """In the place of nbgrader's step that fetches points and comments: it tells besides which points nobody has given yet,
+    and asks the gradebook once for a notebook, or not at all where our own command has the grades already.
+    """
 
-    def _get_score(self, cell, resources):
-        super()._get_score(cell, resources)
-        mark = cell.metadata.nbgrader
-        found = self.gradebook.find_grade(mark.grade_id, self.notebook_id, self.assignment_id, self.student_id)
-        mark.waiting = found.needs_manual_grade
+    def preprocess(self, nb, resources):
+        told = resources["nbgrader"]
+        grades = told.get("grades") or self._asked(told)
+        for cell in nb.cells:
+            mark = cell.metadata.get("nbgrader")
+            if is_solution(cell) or is_task(cell):
+                mark.comment = grades.comments.get(mark.grade_id)
+            if is_grade(cell) or is_task(cell):
+                found = grades.cells[mark.grade_id]
+                mark.score, mark.points, mark.waiting = found.earned, found.most, found.waiting
+        told["score"] = sum(found.earned for found in grades.cells.values()) - grades.penalty
+        told["max_score"] = sum(found.most for found in grades.cells.values())
+        told["late_penalty"] = grades.penalty
+        return nb, resources
+
+    def _asked(self, names):
+        """The NotebookGrades of a notebook in nbgrader's own command."""
+        student, notebook = names["student"], names["notebook"]
+        with Gradebook(names["db_url"]) as gradebook:
+            return grades_in(gradebook, SubmittedAssignment.student_id == student, Notebook.name == notebook)[student][
+                notebook
+            ]
+
+
+class Pieces:
+    """Texts that were made of other texts, and take about as long to make as the page: the class's cells are mostly the same."""
+
+    def __init__(self):
+        self.known, self.size = {}, 0
+
+    def of(self, text, make):
+        """What `make()` makes of this text, and of nothing else."""
+        digest = hashlib.sha256(text.encode()).digest()
+        if digest not in self.known:
+            made = make()
+            if self.size + len(made) > MOST_KEPT:
+                self.known, self.size = {}, 0
+            self.known[digest] = made
+            self.size += len(made)
+            return made
+        return self.known[digest]
 
 
 class Feedback(HTMLExporter):
@@ -49,9 +93,19 @@ class Feedback(HTMLExporter):
         self.template_paths = [*self.template_paths, str(TEMPLATE.parent)]
         self.template_file = TEMPLATE.name
         self.register_filter("points", points)
+        self.environment.globals["once"] = self._once
+        self._pieces = Pieces()
+
+    def _init_preprocessors(self):
+        super()._init_preprocessors()
+        self._preprocessors = [step for step in self._preprocessors if not isinstance(step, Bounded)]  # see `_whole`
+
+    def from_file(self, file_stream, resources=None, **kwargs):
+        """As nbconvert's, but for the validation, which takes as long as the page; the grader has written this file."""
+        return self.from_notebook_node(nbformat.v4.reads(file_stream.read()), resources, **kwargs)
 
     def from_notebook_node(self, nb, resources=None, **kwargs):
-        nb = copy.deepcopy(nb)
+        nb = nbformat.from_dict(nb)  # a copy
         self._word_anew(nb)
         if not self.bare:
             try:
@@ -82,8 +136,21 @@ class Feedback(HTMLExporter):
         self.register_filter("highlight_code", Highlight2HTML(pygments_lexer=lexer, parent=self))
         outputs = WidgetsDataTypeFilter(notebook_metadata=self._nb_metadata, parent=self, resources=made)
         self.register_filter("filter_data_type", outputs)
+        nb.metadata.pop(RECORD, None)  # the cells have what is shown of it
+        self._about = nb.metadata
         page, made = TemplateExporter.from_notebook_node(self, nb, made, **kwargs)
+        self._nb_metadata.clear()  # one page after the other is made
         return NAMELESS.sub(f'<img alt="{NO_NAME}" ', page), made
+
+    def _preprocess(self, nb, resources):
+        """The steps alone: this `nb` is nobody else's, and need not be validated after each of them."""
+        for step in self._preprocessors:
+            nb, resources = step(nb, resources)
+        return nb, resources
+
+    def _once(self, cell, caller):
+        """What the template's `caller` makes of a cell; of one that is the same in all it is made once."""
+        return self._pieces.of(json.dumps([self._about, cell]), caller)
 
     def _word_anew(self, nb):
         """The verdicts in today's words; the notebook has those of the day it was graded."""

@@ -7,7 +7,7 @@ import hashlib
 import json
 import os
 from dataclasses import asdict
-from functools import partial
+from functools import cache, partial
 from urllib.parse import quote
 
 from sqlalchemy.exc import SQLAlchemyError
@@ -15,7 +15,7 @@ from traitlets.config import Config
 from transform_lab.judging import panel
 from transform_lab.judging.status import STATUSES
 
-from ..bridge import nbgrader_api
+from ..bridge.nbgrader_api import FeedbackPages
 from ..course import ASSIGNMENT, CourseError
 from ..files import replace
 from ..grading import digests
@@ -112,10 +112,10 @@ def _words(error):
     return kind + " ".join(str(error).split())[:300]
 
 
-def _whole(course, student, grades, changed=None):
+def _whole(course, student, grades, bare=False):
     problem = None
     if any(course.autograded(student).glob("*.ipynb")):
-        problem = nbgrader_api.call(course, "generate_feedback", ASSIGNMENT, student, changed=changed)
+        problem = _converter(course, bare).make(student, grades)
     course.feedback(student).mkdir(parents=True, exist_ok=True)
     replace(course.feedback(student) / SUMMARY, summary(course, student, grades))
     return problem
@@ -123,8 +123,15 @@ def _whole(course, student, grades, changed=None):
 
 def _verdicts(course, student, grades):
     """Pages without what the student wrote and displayed."""
-    bare = Config(GenerateFeedback={"exporter_class": "autograder.pages.exporter.BareFeedback"})
-    return _whole(course, student, grades, bare)
+    return _whole(course, student, grades, bare=True)
+
+
+@cache
+def _converter(course, bare):
+    """nbgrader's, which a worker makes once."""
+    if not bare:
+        return FeedbackPages(course)
+    return FeedbackPages(course, Config(GenerateFeedback={"exporter_class": "autograder.pages.exporter.BareFeedback"}))
 
 
 def _least(course, student, grades):

@@ -6,8 +6,9 @@ Everything is read back from the autograded notebooks and the gradebook, so it i
 import csv
 import os
 from collections import Counter, defaultdict
-from dataclasses import astuple, fields
+from dataclasses import fields
 from datetime import datetime
+from operator import attrgetter
 from urllib.parse import quote
 
 from markupsafe import Markup
@@ -96,7 +97,8 @@ def _write_verdicts(course, works, graded):
     path = course.reports / "verdicts.csv"
     if graded and path.exists() and path.stat().st_mtime < graded:
         path.replace(course.reports / "before.csv")
-    rows = ((student, *astuple(row)) for student, work in works.items() for row in work.rows)
+    values = attrgetter(*COLUMNS[1:])
+    rows = ((student, *values(row)) for student, work in works.items() for row in work.rows)
     replace(path, table([COLUMNS, *rows]))
     if graded:
         os.utime(path, (graded, graded))
@@ -143,16 +145,13 @@ def _misunderstood(course, works):
     everything = findings.misunderstood(works)
     shared = [found for found in everything if found.students >= SHARED][:MOST_PICTURES]
     rare = everything[len(shared) :]
+    # An example in the exercise where it is most frequent; none of those that any exercise can have.
+    where = [(found.exercises[0][0], found.id) for found in shared]
+    pictures = examples.of_misconceptions(course, [of for of in where if examples.knows(*of)])
     return (
-        [(found, _example(found), *_section(course, found.exercises[0][0])) for found in shared],
+        [(found, Markup(pictures.get(of, "")), *_section(course, of[0])) for found, of in zip(shared, where)],
         [(found, "", *_section(course, found.exercises[0][0])) for found in rare],
     )
-
-
-def _example(found):
-    """An example of a misconception in the exercise where it is most frequent; "" for those that any exercise can have."""
-    exercise = found.exercises[0][0]
-    return Markup(examples.of_misconception(exercise, found.id)) if examples.knows(exercise, found.id) else ""
 
 
 def _section(course, exercise):

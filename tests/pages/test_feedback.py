@@ -18,7 +18,7 @@ from transform_lab.judging.verdict import Reply, examine
 
 from autograder.bridge import nbgrader_api as api
 from autograder.bridge.gradebook import Writer
-from autograder.bridge.nbgrader_api import settings
+from autograder.bridge.settings import settings
 from autograder.course import ASSIGNMENT, Course
 from autograder.exercises import EXERCISES, PUBLIC_SEED, key
 from autograder.grading import public_example
