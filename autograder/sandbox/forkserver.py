@@ -91,6 +91,7 @@ def _larger(control, *served):
 def _load():
     """Import what notebooks use, and set IPython up."""
     with _home():
+        import numpy.ma
         import numpy.random  # noqa: F401
         from executor import Executor
 

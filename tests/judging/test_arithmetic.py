@@ -58,6 +58,13 @@ def test_of_a_turn_after_another(q, vector):
         )
 
 
+@given(VECTORS, st.sampled_from(["xyz", "zyx", "zxz", "yxz", "xyx"]), st.booleans())
+def test_of_three_angles(angles, axes, fixed):
+    theirs = Rotation.from_euler(axes if fixed else axes.upper(), angles)
+    np.testing.assert_array_equal(arithmetic.quaternion_of_turns(angles, axes, fixed), theirs.as_quat())
+    np.testing.assert_array_equal(arithmetic.matrix_of_turns(angles, axes, fixed), theirs.as_matrix())
+
+
 @given(arrays(float, (3, 3), elements=NUMBERS))
 def test_of_what_may_be_no_rotation(R):
     for ours, theirs in of_matrix(R):

@@ -35,7 +35,7 @@ import warnings
 
 import numpy as np
 
-from .arithmetic import Rotation, matrix_of, quaternion_of, turn, vector_of
+from .arithmetic import Rotation, matrix_of, matrix_of_turns, quaternion_of, quaternion_of_turns, turn, vector_of
 from .validation import numbers, rigid_transform, shape_text
 
 __all__ = [
@@ -278,12 +278,11 @@ def _axes(axes):
     return frame, sequence
 
 
-def _from_euler(ai, aj, ak, axes, what):
-    """Return SciPy's Rotation by three angles."""
+def _three_turns(ai, aj, ak, axes, what):
+    """Return the angles, their axes, and whether these are fixed."""
     frame, sequence = _axes(axes)
     angles = [_number(angle, f"{what}: {name}") for angle, name in ((ai, "ai"), (aj, "aj"), (ak, "ak"))]
-    # SciPy's name for the axes: lower case about fixed ones, upper case about the moving frame's
-    return Rotation.from_euler(sequence if frame == "s" else sequence.upper(), angles)
+    return angles, sequence, frame == "s"
 
 
 def _euler(R, axes):
@@ -310,7 +309,7 @@ def _euler(R, axes):
 
 def euler_matrix(ai, aj, ak, axes="sxyz"):
     """Return the 4x4 rotation by the angles `ai`, `aj`, `ak` (radians) about `axes`, in this order."""
-    return _matrix(_from_euler(ai, aj, ak, axes, "euler_matrix").as_matrix())
+    return _matrix(matrix_of_turns(*_three_turns(ai, aj, ak, axes, "euler_matrix")))
 
 
 def euler_from_matrix(matrix, axes="sxyz"):
@@ -331,7 +330,7 @@ def euler_from_quaternion(quaternion, axes="sxyz"):
 
 def quaternion_from_euler(ai, aj, ak, axes="sxyz"):
     """Return the quaternion x, y, z, w of the rotation by `ai`, `aj`, `ak` (radians) about `axes`, in this order."""
-    return _from_euler(ai, aj, ak, axes, "quaternion_from_euler").as_quat()
+    return quaternion_of_turns(*_three_turns(ai, aj, ak, axes, "quaternion_from_euler"))
 
 
 # Quaternions

@@ -40,16 +40,23 @@ def turn(vector):
 def turned(q, vector):
     """x, y, z, w of the rotation of a unit quaternion, after a turn by a rotation vector given in the turned frame."""
     length = _length(q)
-    (x, y, z, w), (a, b, c, d) = (float(number) / length for number in q), _quaternion_of_vector(vector)
-    product = np.array(
-        [
-            w * a + d * x + (y * c - z * b),
-            w * b + d * y + (z * a - x * c),
-            w * c + d * z + (x * b - y * a),
-            w * d - x * a - y * b - z * c,
-        ]
-    )
+    product = np.array(_product([float(number) / length for number in q], _quaternion_of_vector(vector)))
     return product / _length(product)
+
+
+def quaternion_of_turns(angles, axes, fixed):
+    """x, y, z, w of turns by angles (radians) about axes ("xyz"), one after the other; fixed ones, or else the turned frame's."""
+    q = (0.0, 0.0, 0.0, 1.0)
+    for angle, axis in zip(angles, axes):
+        step = [0.0, 0.0, 0.0, cos(angle / 2)]
+        step["xyz".index(axis)] = sin(angle / 2)
+        q = _product(step, q) if fixed else _product(q, step)
+    return np.array(q)
+
+
+def matrix_of_turns(angles, axes, fixed):
+    """The 3x3 matrix of these turns."""
+    return _matrix(*quaternion_of_turns(angles, axes, fixed).tolist())
 
 
 def quaternion_of(R):
@@ -89,6 +96,16 @@ def angle_of(R):
 def _length(q):
     x, y, z, w = map(float, q)
     return sqrt(x * x + y * y + z * z + w * w)
+
+
+def _product(p, q):
+    (x, y, z, w), (a, b, c, d) = p, q
+    return (
+        w * a + d * x + (y * c - z * b),
+        w * b + d * y + (z * a - x * c),
+        w * c + d * z + (x * b - y * a),
+        w * d - x * a - y * b - z * c,
+    )
 
 
 def _quaternion_of_vector(vector):
