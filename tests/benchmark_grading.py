@@ -2,6 +2,7 @@
 
     .venv/bin/python tests/benchmark_grading.py --students 100 --nbgrader-students 6
     .venv/bin/python tests/benchmark_grading.py --students 1000 --growth      # and a tenth of them before
+    .venv/bin/python tests/benchmark_grading.py --students 60 --against HEAD~9  # as that revision grades a class, in turn
     .venv/bin/python tests/benchmark_grading.py --profile                     # where the time of one submission goes
 
 Each student hands in all five notebooks, solved. Both sides run the notebooks as they do in grading, without drawing
@@ -29,7 +30,6 @@ from support import MADE_AT_RUN_TIME, marks, without_plugin  # noqa: E402
 
 from autograder.bridge.gradebook import Writer  # noqa: E402
 from autograder.course import ASSIGNMENT, Course  # noqa: E402
-from autograder.handout.release import release  # noqa: E402
 
 os.environ["TRANSFORM_LAB_GRADING"] = "1"
 os.environ["PATH"] = f"{Path(sys.prefix, 'bin')}{os.pathsep}{os.environ['PATH']}"  # nbgrader runs alembic by name
@@ -37,13 +37,11 @@ OURS = [sys.executable, "-m", "autograder", "grade", "--no-feedback"]
 STOCK = [sys.executable, "-m", "nbgrader", "autograde", ASSIGNMENT]
 
 
-def make_class(folder, students):
-    """A released course in `folder` in which so many students have handed in all notebooks."""
-    shutil.copytree(ROOT, folder, ignore=shutil.ignore_patterns(*MADE_AT_RUN_TIME, ".pytest_cache"))
+def make_class(folder, students, root=ROOT):
+    """A released course in `folder`, as the checkout `root` has it, in which so many students have handed in all notebooks."""
+    shutil.copytree(root, folder, ignore=shutil.ignore_patterns(*MADE_AT_RUN_TIME, ".pytest_cache"))
     course = Course(folder)
-    release(course)
-    with Writer(course):
-        pass  # registers the assignment, which stock nbgrader does not do
+    subprocess.run([sys.executable, "-m", "autograder", "release"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
     for number in range(students):
         target = course.submitted(f"student_{number:04}")
         target.mkdir(parents=True)
@@ -129,6 +127,8 @@ def compare(folder, students, stock_students, growth):
         print(f"growth: {students} students took {seconds / seconds_small:.1f} times as long as {students // 10}")
     if stock_students:
         stock = make_class(folder / "stock", stock_students)
+        with Writer(stock):
+            pass  # registers the assignment, which stock nbgrader does not do
         without_plugin(stock)
         stock_seconds, *rest = measure(STOCK, stock)
         stock_rate = tell("nbgrader", stock_students * each, stock_seconds, *rest)
@@ -138,6 +138,26 @@ def compare(folder, students, stock_students, growth):
             f"throughput ratio {rate / stock_rate:.1f}x (ours {rate:.0f} nb/min, nbgrader {stock_rate:.0f} nb/min), "
             f"scores equal: {'yes' if equal and wanted else 'no'}"
         )
+
+
+def compare_with(revision, folder, students, rounds):
+    """Grade a class from nothing as the code here does and as that of a revision does, in turn."""
+    git = ["git", "-C", str(ROOT), "worktree"]
+    subprocess.run([*git, "add", "--detach", "--quiet", str(folder / "revision"), revision], check=True)
+    try:
+        classes = {"now": make_class(folder / "now", students)}
+        classes[revision] = make_class(folder / "then", students, folder / "revision")
+        spent = dict.fromkeys(classes, 0.0)
+        for _ in range(rounds):
+            for name, course in classes.items():
+                for made in (course.root / "gradebook.db", course.root / "autograded", course.reports):
+                    shutil.rmtree(made, ignore_errors=True) if made.is_dir() else made.unlink(missing_ok=True)
+                seconds, processor, peak = measure(OURS, course)
+                tell(name[:10], students * len(course.notebooks), seconds, processor, peak)
+                spent[name] += processor
+        print(f"processor time: {spent[revision] / spent['now']:.2f} times less than {revision}")
+    finally:
+        subprocess.run([*git, "remove", "--force", str(folder / "revision")], check=True)
 
 
 def profile(folder, times=10):
@@ -194,6 +214,8 @@ def main():
     parser.add_argument("--students", type=int, default=100)
     parser.add_argument("--nbgrader-students", type=int, default=6, help="for stock nbgrader (0: leave it out)")
     parser.add_argument("--growth", action="store_true", help="grade a tenth of the students first")
+    parser.add_argument("--against", metavar="REV", help="grade as this revision does, too, in place of nbgrader")
+    parser.add_argument("--rounds", type=int, default=3, help="with --against")
     parser.add_argument("--profile", action="store_true", help="only tell where the time of one submission goes")
     parser.add_argument("--smallest", action="store_true", help="do all of it with one student, to see that it works")
     options = parser.parse_args()
@@ -201,6 +223,8 @@ def main():
         if options.smallest:
             compare(Path(folder), 1, 1, growth=False)
             profile(Path(folder), times=1)
+        elif options.against:
+            compare_with(options.against, Path(folder), options.students, options.rounds)
         elif options.profile:
             profile(Path(folder))
         else:

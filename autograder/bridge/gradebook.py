@@ -9,6 +9,7 @@ import logging
 import shutil
 import sqlite3
 import time
+from importlib import resources
 
 import nbformat
 from nbgrader.api import (
@@ -23,7 +24,7 @@ from nbgrader.api import (
     SubmittedNotebook,
 )
 from nbgrader.preprocessors import AssignLatePenalties
-from sqlalchemy import Engine, event, select, update
+from sqlalchemy import Engine, create_engine, event, inspect, select, update
 from sqlalchemy.exc import DatabaseError, OperationalError
 
 from ..course import ASSIGNMENT, CourseError
@@ -55,8 +56,10 @@ def _wait_for_locks(connection, _):
 
 def opened(course):
     """nbgrader's Gradebook of a course, made where there is none; raises CourseError when it cannot be read."""
+    url = db_url(course)
     try:
-        return Gradebook(db_url(course))
+        _stamp(url)
+        return Gradebook(url)
     except DatabaseError as error:
         if "locked" in str(error):
             raise CourseError(
@@ -67,6 +70,22 @@ def opened(course):
             f"The gradebook cannot be read ({error.orig}). Put a backup in its place; or move it away, and "
             "`python3 -m autograder grade --force` makes a new one from submitted/ (without hand-given grades)."
         ) from None
+
+
+def _stamp(url):
+    """Note in a new database which version of nbgrader's tables it has: nbgrader starts a program to find that out."""
+    engine = create_engine(url)
+    try:
+        if not inspect(engine).get_table_names():
+            from alembic.migration import MigrationContext
+            from alembic.script import ScriptDirectory
+
+            with engine.begin() as connection:
+                MigrationContext.configure(connection).stamp(
+                    ScriptDirectory(str(resources.files("nbgrader") / "alembic")), "heads"
+                )
+    finally:
+        engine.dispose()
 
 
 def grades(gradebook, *only):
