@@ -95,11 +95,13 @@ class XCachingCompiler(CachingCompiler):
     def __init__(self):
         super().__init__()
         self.trees = {}  # {text of a cell: (flags, its syntax tree)}
-        self.codes = {}  # {(a statement's id in one of the trees, mode, flags): its code}
+        self.codes = {}  # {(id of a statement in one of the trees, mode, flags): (the statement, its code)}
         self.quiet = {}  # {text of a cell: whether it ends in a semicolon}
 
     def expect(self, cell):
         """Parse and compile a cell (as transformed) that will be run, as IPython will; one that gives a warning is left."""
+        if cell in self.trees:
+            return
         tree, flags = super().ast_parse(cell), self.flags
         codes = {}
         with self.extra_flags(ast.PyCF_ALLOW_TOP_LEVEL_AWAIT):
@@ -107,7 +109,7 @@ class XCachingCompiler(CachingCompiler):
                 shown = statement is tree.body[-1] and isinstance(statement, ast.Expr)
                 mode, whole = ("single", ast.Interactive) if shown else ("exec", partial(ast.Module, type_ignores=[]))
                 code = super().__call__(whole([statement]), "", mode)
-                codes[id(statement), mode, self.flags] = code
+                codes[id(statement), mode, self.flags] = statement, code
         if self.flags == flags:  # it imports nothing from __future__
             self.trees[cell], self.quiet[cell] = (flags, tree), DisplayHook.semicolon_at_end_of_expression(cell)
             self.codes |= codes
@@ -121,8 +123,11 @@ class XCachingCompiler(CachingCompiler):
 
     def __call__(self, source, filename, symbol, **kwargs):
         body = source.body if isinstance(source, (ast.Module, ast.Interactive)) else ()
-        code = self.codes.get((id(body[0]), symbol, self.flags)) if len(body) == 1 else None
-        return _in_file(code, filename) if code else super().__call__(source, filename, symbol, **kwargs)
+        if len(body) == 1:
+            statement, code = self.codes.get((id(body[0]), symbol, self.flags), (None, None))
+            if statement is body[0]:
+                return _in_file(code, filename)
+        return super().__call__(source, filename, symbol, **kwargs)
 
     def get_code_name(self, raw_code, code, number):
         number = zlib.crc32(raw_code.encode(errors="replace"))
@@ -205,7 +210,7 @@ class ZMQInteractiveShell(InteractiveShell):
     def expect(self, cells):
         """Make of these cells (texts) what IPython will make of them, once for all notebooks."""
         self.transformers = self._transformers()
-        for cell in cells:
+        for cell in set(cells) - self.expected.keys():
             with warnings.catch_warnings():
                 warnings.simplefilter("error")
                 try:
