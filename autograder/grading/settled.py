@@ -126,13 +126,13 @@ def _same(one, other, without):
 
 def table(course, students, settings):
     """What the last run printed of the class, if it has left nothing to do and nothing looks otherwise; else None."""
-    try:
+    with contextlib.suppress(
+        OSError, ValueError, LookupError, TypeError
+    ):  # there are none, or somebody has damaged them
         kept = json.loads((course.reports / KEPT).read_text(encoding="utf-8"))
         if kept["about"] == _about(students, settings) and kept["looks"] == look(course, kept["gradebook"]):
             if kept["fresh"] == {path: _digest(path) for path in kept["fresh"]}:
                 return kept["table"]
-    except (OSError, ValueError, LookupError, TypeError):
-        pass
     return None
 
 

@@ -223,6 +223,7 @@ get_ipython().ast_transformers.append(Seven())""",
     "assigned values shown": "get_ipython().ast_node_interactivity = 'last_expr_or_assign'",
     "warnings as errors": "import warnings; warnings.simplefilter('error')",
     "annotations of the future": "from __future__ import annotations",
+    "operators of the future": "from __future__ import barry_as_FLUFL",
     "no await at the top": "get_ipython().autoawait = False",
 }
 AFTER = [
@@ -230,6 +231,7 @@ AFTER = [
     "n",
     "n;",
     "n\nn",
+    "n != 2\nn",
     "def f(x: absent = 1): return x\nf()",
     "f()",
     "'\\d'",
