@@ -37,55 +37,42 @@ def main():
     os.dup2(null, 0)
     libc = ctypes.CDLL(None, use_errno=True)
     own = os.open("/proc/self/ns/pid", os.O_RDONLY) if sys.platform == "linux" else None
+    server, larger = os.getpid(), None
     try:
         executor, put_on_filter = _load()
         signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for what is forked
-        _serve(control, libc, own, executor, put_on_filter)
+        while True:
+            command, descriptors, _, _ = socket.recv_fds(control, 1, 2)
+            if not command:
+                return
+            if command == FORK_LARGER and not larger:
+                larger, its_control = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+                if os.fork() == 0:  # this one goes on as the larger server, each fork of which costs more
+                    _die_with_parent(libc)
+                    control, larger, command = its_control, None, None
+                    _load_more()
+                else:
+                    its_control.close()
+            if command == EXPECT:
+                executor.shell.expect(json.loads(Path(f"/proc/self/fd/{descriptors[0]}").read_text(encoding="utf-8")))
+                gc.collect()
+                gc.freeze()
+                if larger:
+                    socket.send_fds(larger, [EXPECT], descriptors)
+            elif command == FORK_LARGER:
+                socket.send_fds(larger, [FORK], descriptors)
+            elif command == FORK and len(descriptors) == 1:
+                _start(libc, executor, put_on_filter, *descriptors)
+            elif command == FORK and os.getuid() == 0:
+                _start(libc, executor, put_on_filter, *descriptors)
+                _enter(libc, own, CLONE_NEWPID)
+            elif command == FORK and os.fork() == 0:  # who has no right to come back does not leave
+                _guard(libc, executor, put_on_filter, *descriptors)
+            for descriptor in descriptors:
+                os.close(descriptor)
     finally:
-        shutil.rmtree(here, ignore_errors=True)
-
-
-def _serve(control, libc, own, executor, put_on_filter):
-    """Do what is asked over `control` until nobody is there any more."""
-    larger = None
-    while True:
-        command, descriptors, _, _ = socket.recv_fds(control, 1, 2)
-        if not command:
-            return
-        if command == EXPECT:
-            executor.shell.expect(json.loads(Path(f"/proc/self/fd/{descriptors[0]}").read_text(encoding="utf-8")))
-            gc.collect()
-            gc.freeze()
-            if larger:
-                socket.send_fds(larger, [EXPECT], descriptors)
-        elif command == FORK_LARGER:
-            larger = larger or _larger(control, libc, own, executor, put_on_filter)
-            socket.send_fds(larger, [FORK], descriptors)
-        elif len(descriptors) == 1:
-            _start(libc, executor, put_on_filter, *descriptors)
-        elif os.getuid() == 0:
-            _start(libc, executor, put_on_filter, *descriptors)
-            _enter(libc, own, CLONE_NEWPID)
-        elif os.fork() == 0:  # who has no right to come back does not leave
-            _guard(libc, executor, put_on_filter, *descriptors)
-        for descriptor in descriptors:
-            os.close(descriptor)
-
-
-def _larger(control, *served):
-    """Fork a server that loads what few notebooks need, and each fork of which costs more; our end of its control."""
-    ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    if os.fork() == 0:
-        try:
-            control.close()
-            ours.close()
-            _die_with_parent(served[0])
-            _load_more()
-            _serve(theirs, *served)
-        finally:
-            os._exit(0)
-    theirs.close()
-    return ours
+        if os.getpid() == server:
+            shutil.rmtree(here, ignore_errors=True)
 
 
 def _load():

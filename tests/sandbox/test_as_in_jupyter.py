@@ -112,6 +112,7 @@ NOISE = [
     (r"(/tmp/ipykernel_\d+/)?\b\d+\.py\b", "CELL.py"),
     (r"\b(Thread|Task)-\d+", r"\1-N"),
     (r"\d[\d.e+]* ?(s|ms|μs|ns)\b", "TIME"),
+    (r"\bFile ~/", "File /tmp/"),  # where the project lies in what is a notebook's home in the sandbox
     (r"(maximum recursion depth exceeded)[\w ]*", r"\1"),  # in whose hands it is then, hangs on where it began
     # what lies in the kernel's own code: its files are others
     (rf"(?m)^File \S*(?:/ipykernel/|/grader-\w+/).*\n(?:(?!{FRAME}).*\n?)*", ""),
