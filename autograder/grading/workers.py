@@ -55,6 +55,7 @@ class Processes:
         tried_again: list = []
         idle: list[_Worker] = []
         busy: list[_Worker] = []
+        done: list = []  # handed on when the workers have their next
         try:
             while True:
                 while sum(not worker.slow for worker in busy) < self.jobs and len(busy) < self.jobs + EXTRA:
@@ -62,6 +63,8 @@ class Processes:
                         break
                     busy.append(idle.pop() if idle else _Worker(self.function))
                     busy[-1].begin(taken.pop())
+                yield from done
+                done.clear()
                 if not busy:
                     return
                 ready = multiprocessing.connection.wait([worker.connection for worker in busy], GLANCE)
@@ -76,7 +79,7 @@ class Processes:
                         again.append(worker.item)
                         tried_again.append(worker.item)
                     else:
-                        yield worker.item, found[0]
+                        done.append((worker.item, found[0]))
         finally:
             for worker in (*idle, *busy):
                 worker.end()

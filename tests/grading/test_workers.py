@@ -81,6 +81,19 @@ def test_those_who_take_long_do_not_keep_the_others_waiting(tmp_path, monkeypatc
     assert [item for item, _ in Processes(wait_for_the_last, 1).each(["first", "second", "last"])][-1] == "first"
 
 
+def begun(folder, item):
+    (folder / str(item)).touch()
+    return item
+
+
+def test_a_worker_has_its_next_while_what_came_of_the_last_is_recorded(tmp_path):
+    for item, _ in Processes(partial(begun, tmp_path), 1).each([1, 2, 3]):
+        until = time.monotonic() + 20
+        while item < 3 and not (tmp_path / str(item + 1)).exists():
+            assert time.monotonic() < until, "the worker waits for whoever records"
+            time.sleep(0.01)
+
+
 def test_no_worker_is_left(done):
     for _ in Processes(partial(work, None), 3).each("abcdef"):
         break

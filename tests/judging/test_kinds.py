@@ -15,13 +15,13 @@ from scipy.spatial.transform import Rotation
 from support import ROOT, SEEDS, judged
 from transform_lab import Point, Pose, PoseStamped, Quaternion, Viewer
 from transform_lab.check import CheckFailed, check
-from transform_lab.judging import codec, comparison, panel
+from transform_lab.judging import codec, comparison, panel, verdict
 from transform_lab.judging.answers import is_right, parts_of, same
 from transform_lab.judging.calling import call
 from transform_lab.judging.kinds import KINDS, Kind, Part
 from transform_lab.judging.naming import GENERAL
 from transform_lab.judging.reading import Unfit, array
-from transform_lab.judging.verdict import examine
+from transform_lab.judging.verdict import Reply, compare, examine, is_right_itself
 
 from autograder.course import Course
 from autograder.exercises import EXERCISES, PUBLIC_SEED, Case, Exercise, Misconception, key
@@ -69,6 +69,42 @@ def test_a_right_answer_can_be_read_and_agrees_with_itself(returns):
         assert same(returns, answer, answer)
         off = {name: part.off(parts[name], parts[name]) for name, part in kind.parts.items()}
         assert set(off.values()) == {"right"}
+
+
+LOOKALIKES = {
+    "whole numbers": lambda number: int(number) if type(number) is float and number == int(number) else number,
+    "truths": lambda number: bool(number) if number in (0, 1) else number,
+    "floats for truths": lambda number: float(number) if type(number) is bool else number,
+    "minus zero": lambda number: -0.0 if number == 0 and type(number) is float else number,
+    "the last digit": lambda number: math.nextafter(number, 9) if type(number) is float else number,
+}
+
+
+def numbers_changed(plain, change):
+    if isinstance(plain, dict):
+        return {name: value if name == "shape" else numbers_changed(value, change) for name, value in plain.items()}
+    if isinstance(plain, list):
+        return [numbers_changed(value, change) for value in plain]
+    return plain if plain is None or isinstance(plain, str) else change(plain)
+
+
+@every_kind
+@pytest.mark.parametrize("change", LOOKALIKES.values(), ids=LOOKALIKES)
+def test_what_only_looks_like_the_right_answer_is_compared_with_it(returns, change, monkeypatch):
+    for right in itertools.islice(right_answers(returns), 20):
+        case = {"args": [], "kwargs": {}, "expected": right}
+        alike = numbers_changed(right, change)
+        assert is_right_itself(case, json.loads(json.dumps(right)))
+        assert is_right_itself(case, alike) == (json.dumps(alike) == json.dumps(right))
+        at_once = compare(returns, case, Reply("returned", alike, [[], {}]))
+        with monkeypatch.context() as patched:
+            patched.setattr(verdict, "is_right_itself", lambda *_: False)
+            compared = compare(returns, case, Reply("returned", alike, [[], {}]))
+        assert (at_once.parts, at_once.answered, at_once.problem) == (
+            compared.parts,
+            compared.answered,
+            compared.problem,
+        )
 
 
 @every_kind
