@@ -30,6 +30,15 @@ OPEN_TO_THE_NETWORK = (
     "TLS (README, “Larger classes”), or start scheduler and workers with `--host 127.0.0.1` on this machine alone."
 )
 
+NEW_TERM = f"""\
+The course is called {{name}} now (nbgrader_config.py). What is left to do:
+  1. Change what you want in source/, then `python3 -m autograder release`.
+  2. The class: `nbgrader db student import FILE.csv` (columns id,first_name,last_name,email,lms_user_id, or some of them).
+  3. The due date: `nbgrader db assignment add {ASSIGNMENT} --duedate "2027-01-31 18:00 UTC"`.
+  4. On a hub: c.CourseDirectory.course_id = "{{name}}" in the students' configuration, too; then
+     `nbgrader release_assignment {ASSIGNMENT}`.
+"""
+
 
 def run(options):
     """Carry out a command, as the command line gave it; its exit code, see command_line.py."""
@@ -332,14 +341,14 @@ def _add_row(table, *cells):
 
 
 def _table(found, students):
-    """[(student, points, what needs a look)], in words, of those who have {student: [Row]}."""
+    """[(student, points, what needs a look)], in words, of those who have {student: Work}."""
     table = []
     for student in [student for student in students if student in found]:
-        rows, said = found[student], {}
-        points = f"{sum(row.score for row in rows):g} of {sum(row.max_score for row in rows):g}"
-        for row in rows:
-            if row.remark:
-                said.setdefault(row.remark, []).append(row.exercise)
+        work, said = found[student], {}
+        for row in work.rows:
+            if remark := work.remark(row):
+                said.setdefault(remark, []).append(row.exercise)
+        points = f"{work.points:g} of {work.most:g}"
         table.append([student, points, "; ".join(f"{what} ({', '.join(names)})" for what, names in said.items())])
     return table
 
@@ -360,6 +369,32 @@ def report(options):
         found = report.write(here, writer)
     _show_class(_table(found, found))
     console.print(f"{here.reports.relative_to(here.root)}/index.html, verdicts.csv and grades.csv are written.")
+    return 0
+
+
+def extend(options):
+    from datetime import timedelta
+
+    from .bridge.gradebook import Writer
+    from .bridge.lateness import extend
+
+    here = course()
+    with here.one_grader_at_a_time(_busy), Writer(here) as writer:
+        extension = timedelta(days=options.days, hours=options.hours)
+        line = extend(writer.gradebook, writer.config, options.student, extension)
+    console.print(line, markup=False)
+    console.print("`python3 -m autograder grade` renews the report and the student's pages.", markup=False)
+    return 0
+
+
+def term(options):
+    from .bridge.term import begin
+
+    here = course()
+    archive, moved = begin(here, options.name, _busy)
+    if archive:
+        console.print(f"{', '.join(moved)}: now in {archive.relative_to(here.root)}/.", markup=False)
+    console.print(NEW_TERM.format(name=options.name), markup=False, end="")
     return 0
 
 
@@ -462,5 +497,5 @@ def test(options):
     return subprocess.call([sys.executable, "-m", "pytest", *tier, *(options.extra or spread)])
 
 
-_ALL = demo, lab, release, collect, grade, report, check, prove, doctor, package, export, test
+_ALL = demo, lab, release, collect, grade, report, extend, term, check, prove, doctor, package, export, test
 COMMANDS = {command.__name__: command for command in _ALL}

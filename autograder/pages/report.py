@@ -13,6 +13,7 @@ from urllib.parse import quote
 
 from markupsafe import Markup
 
+from ..bridge.gradebook import BY_HAND
 from ..course import ASSIGNMENT
 from ..files import replace
 from ..grading.judge import Row
@@ -31,19 +32,21 @@ FORMGRADER = f"http://localhost:8888/formgrader/gradebook/{ASSIGNMENT}/"
 
 
 def write(course, writer):
-    """Write index.html, verdicts.csv and grades.csv into reports/transforms/; {student: [Row]} they were made from.
+    """Write index.html, verdicts.csv and grades.csv into reports/transforms/; {student: Work} they were made from.
 
     Shown are the students whose work is there and in the gradebook, which the gradebook.Writer knows.
     """
     handed_in, known = course.students(), writer.students()
     works = {student: _work(course, student) for student in handed_in if student in known}
+    grades = writer.grades()
+    for student, work in works.items():
+        work.take(grades[student])
     runs = findings.runs(works)
     course.reports.mkdir(parents=True, exist_ok=True)
     _write_verdicts(course, works, runs[0].graded.timestamp() if runs else None)
     writer.export(course.reports / "grades.csv")
     since, before = _before(course)
     shared, rare = _misunderstood(course, works)
-    grades = writer.grades()
     waiting = [
         (student, notebook, cell)
         for student in works
@@ -70,7 +73,7 @@ def write(course, writer):
         by_hand={student: _by_hand(course, grades[student]) for student in works},
     )
     replace(course.reports / "index.html", TURNING.sub("", printable(page)))
-    return {student: work.rows for student, work in works.items()}
+    return works
 
 
 def _work(course, student):
@@ -89,7 +92,7 @@ def _work(course, student):
 
 
 def _write_verdicts(course, works, graded):
-    """Write verdicts.csv; the one of an earlier grading is kept as before.csv.
+    """Write verdicts.csv; the one of an earlier grading is kept as before.csv. Where a person has given points, a last column says so.
 
     graded: when the last of these notebooks was graded, in seconds; the file gets this as its date. So a report that is
     made again from the same grading is compared with the same file as the first time.
@@ -97,9 +100,13 @@ def _write_verdicts(course, works, graded):
     path = course.reports / "verdicts.csv"
     if graded and path.exists() and path.stat().st_mtime < graded:
         path.replace(course.reports / "before.csv")
-    values = attrgetter(*COLUMNS[1:])
-    rows = ((student, *values(row)) for student, work in works.items() for row in work.rows)
-    replace(path, table([COLUMNS, *rows]))
+    values, some = attrgetter(*COLUMNS[1:]), any(work.by_hand for work in works.values())
+    rows = [
+        (student, *values(row), *(["yes" if row.exercise in work.by_hand else ""] if some else []))
+        for student, work in works.items()
+        for row in work.rows
+    ]
+    replace(path, table([[*COLUMNS, *([BY_HAND] if some else [])], *rows]))
     if graded:
         os.utime(path, (graded, graded))
 

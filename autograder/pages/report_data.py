@@ -5,7 +5,7 @@ Throughout, `works` is {student: Work}, in the order in which they are to be sho
 
 import os
 from collections import Counter, defaultdict
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from math import ceil
 from typing import NamedTuple
@@ -25,12 +25,14 @@ class Work:
 
     rows: a Row for each exercise; said: {exercise: [(what the answer shows, the hint) for each mistake]}, as the student reads
     undone: exercises that nobody has filled in; absent: notebooks that were not handed in
+    by_hand: {exercise: the grader's own points}, where a person has given others in their place
     problems: what was odd about the files, in words; runs: {seed of the hidden cases: when it was used last}
     """
 
     rows: list = field(default_factory=list)
     said: dict = field(default_factory=dict)
     undone: set = field(default_factory=set)
+    by_hand: dict = field(default_factory=dict)
     absent: list = field(default_factory=list)
     problems: list = field(default_factory=list)
     runs: dict = field(default_factory=dict)
@@ -42,6 +44,18 @@ class Work:
     @property
     def most(self):
         return sum(row.max_score for row in self.rows)
+
+    def take(self, grades):
+        """Have the points be those of the gradebook, {notebook: NotebookGrades}, where a person has given some by hand."""
+        for i, row in enumerate(self.rows):
+            told = grades[row.notebook].cells.get(row.exercise) if row.notebook in grades else None
+            if told and told.by_hand:
+                self.by_hand[row.exercise] = row.score
+                self.rows[i] = replace(row, score=told.earned)
+
+    def remark(self, row):
+        """What a table says of a row in a word or two; "" where there is nothing to say."""
+        return "; ".join(filter(None, [row.remark, "points by hand" if row.exercise in self.by_hand else ""]))
 
     def is_undone(self, row):
         return STATUSES[row.status].counts == "undone" or row.exercise in self.undone
