@@ -56,6 +56,7 @@ TOP_LEVEL = {
     "autograder",
     "tests",
     "findings",
+    "docs",
 }
 
 
