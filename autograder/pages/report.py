@@ -92,7 +92,7 @@ def _work(course, student):
 
 
 def _write_verdicts(course, works, graded):
-    """Write verdicts.csv; the one of an earlier grading is kept as before.csv. Where a person has given points, a last column says so.
+    """Write verdicts.csv, where a last column tells of points by hand; the one of an earlier grading is kept as before.csv.
 
     graded: when the last of these notebooks was graded, in seconds; the file gets this as its date. So a report that is
     made again from the same grading is compared with the same file as the first time.
