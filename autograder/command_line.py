@@ -94,7 +94,13 @@ def _parser():
     )
     sub.add_argument("--no-feedback", action="store_true", help="leave out the feedback pages")
     sandbox_options(sub)
-    add("report", "write the class report from what is graded")
+    sub = add("report", "write the class report from what is graded")
+    sub.add_argument(
+        "--compare",
+        type=Path,
+        metavar="PATH",
+        help="with another class: its verdicts.csv, or a term's folder in archive/",
+    )
     sub = add("extend", "give a student more time, and say what being late costs then")
     sub.add_argument("student", metavar="STUDENT", help="as the folder in submitted/ is called")
     for unit in ("days", "hours"):

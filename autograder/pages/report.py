@@ -14,7 +14,7 @@ from urllib.parse import quote
 from markupsafe import Markup
 
 from ..bridge.gradebook import BY_HAND
-from ..course import ASSIGNMENT
+from ..course import ASSIGNMENT, CourseError
 from ..files import replace
 from ..grading.judge import Row
 from ..grading.records import missing
@@ -31,9 +31,10 @@ SHARED = 2  # students that make a misconception one of the class's, with a pict
 FORMGRADER = f"http://localhost:8888/formgrader/gradebook/{ASSIGNMENT}/"
 
 
-def write(course, writer):
+def write(course, writer, compare=None):
     """Write index.html, verdicts.csv and grades.csv into reports/transforms/; {student: Work} they were made from.
 
+    compare: the path of another class's verdicts.csv, or of a folder that has one; raises CourseError when it cannot be read
     Shown are the students whose work is there and in the gradebook, which the gradebook.Writer knows.
     """
     handed_in, known = course.students(), writer.students()
@@ -54,6 +55,7 @@ def write(course, writer):
         for cell, points in found.cells.items()
         if points.waiting
     ]
+    other = _verdicts_of(compare) if compare else None
     page = _template(course).render(
         assignment=ASSIGNMENT,
         works=works,
@@ -70,6 +72,11 @@ def write(course, writer):
         formgrader=FORMGRADER,
         since=since,
         changes=findings.changes(before, works) if before else None,
+        together=findings.together(works),
+        fewest=findings.FEWEST,
+        slow=findings.slow(works),
+        compare=compare,
+        compared=_compared(compare, other, works) if compare else None,
         by_hand={student: _by_hand(course, grades[student]) for student in works},
     )
     replace(course.reports / "index.html", TURNING.sub("", printable(page)))
@@ -127,6 +134,30 @@ def _before(course):
     except (ValueError, KeyError, TypeError, csv.Error):
         return since, {}
     return (since, dict(scores)) if scores else (None, {})
+
+
+def _verdicts_of(path):
+    """The rows of a verdicts.csv as dictionaries: the file itself, or that of a course, of a term's archive, or of reports/."""
+    places = [path, *(path / below / "verdicts.csv" for below in ("", ASSIGNMENT, f"reports/{ASSIGNMENT}"))]
+    for place in places:
+        if place.is_file():
+            try:
+                with open(place, newline="", encoding="utf-8") as file:
+                    return list(csv.DictReader(file))
+            except (UnicodeDecodeError, csv.Error) as error:
+                raise CourseError(f"{place}: this is no verdicts.csv ({error}).") from None
+    raise CourseError(
+        f"{path}: there is no verdicts.csv to compare with. Name the file, or a term's folder in archive/."
+    )
+
+
+def _compared(path, rows, works):
+    try:
+        return findings.compared(rows, works)
+    except (LookupError, ValueError, TypeError, AttributeError):
+        raise CourseError(
+            f"{path}: this is no verdicts.csv: a row lacks a student, an exercise, or its points."
+        ) from None
 
 
 # --- the page -------------------------------------------------------------------------------------------------------

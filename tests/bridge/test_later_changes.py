@@ -149,7 +149,8 @@ def test_points_that_a_person_gives_are_the_same_everywhere_and_are_told(handed_
     give(handed_in, "alice", "3_chaining", "chain", 0.5)
     said = graded(handed_in)
     less = points(*ALICE) - points("3_chaining") / 2 + 0.5
-    assert re.search(rf"alice +{less:g} of {points():g} +points by hand \(chain\)", said)
+    said = " ".join(said.split())
+    assert f"alice {less:g} of {points():g} " in said and "points by hand (chain)" in said
     assert (scores(handed_in, "alice")["chain"], score(handed_in, "alice")) == (0.5, less)
     told = {(row["student"], row["exercise"]): row["by_hand"] for row in verdicts(handed_in)}
     assert [of for of, by_hand in told.items() if by_hand] == [("alice", "chain")]
@@ -160,7 +161,7 @@ def test_points_that_a_person_gives_are_the_same_everywhere_and_are_told(handed_
     assert "Points given by hand in the grader's place: 1 student" in page
     assert re.search(r"<code>chain</code></a>\s+2 → 0.5", page)
     assert "0.5 of 2, given by a person" in (handed_in.feedback("alice") / "index.html").read_text()
-    assert re.search(r"alice +.*points by hand", graded(handed_in))  # also when there is nothing new
+    assert "points by hand (chain)" in " ".join(graded(handed_in).split())  # also when there is nothing new
 
 
 def test_what_a_person_gave_survives_any_grading_and_is_looked_at_again_where_the_work_is_another(handed_in):
