@@ -139,7 +139,7 @@ def _account(uid):
 
 
 class ReleaseFeedback(ExchangeReleaseFeedback):
-    """`nbgrader release_feedback`: it passes over those whose work did not come through the exchange, and names who has no pages."""
+    """`nbgrader release_feedback`: it passes over whose work did not come through the exchange, and names who has no pages."""
 
     def copy_files(self):
         made = sorted(glob.glob(self.src_path))
