@@ -3,8 +3,8 @@
 nbgrader_config.py names the exporter here, and the step before it.
 """
 
-import copy
 import contextlib
+import copy
 import hashlib
 import html
 import json
@@ -14,6 +14,7 @@ from functools import cache, partial
 from pathlib import Path
 
 import nbformat
+from jinja2 import pass_context
 from nbconvert.exporters import HTMLExporter, TemplateExporter
 from nbconvert.filters.highlight import _pygments_highlight
 from nbconvert.filters.widgetsdatatypefilter import WidgetsDataTypeFilter
@@ -75,9 +76,13 @@ class Pieces:
     def __init__(self, folder=None):
         self.folder, self.known, self.size, self.left = folder, {}, 0, 0
 
+    def get(self, text):
+        """What was made of this text, or None where this process does not know."""
+        return self.known.get(_digest(text))
+
     def of(self, text, make):
         """What `make()` makes of this text, and of nothing else."""
-        digest = hashlib.sha256(text.encode()).hexdigest()
+        digest = _digest(text)
         if digest not in self.known:
             made = self._found(digest)
             if made is None:
@@ -106,6 +111,10 @@ class Pieces:
                 fresh.rename(self.folder / digest)
 
 
+def _digest(text):
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
 class Owned(nbformat.NotebookNode):
     """A notebook that is nobody else's, so that nbconvert need not copy it before it makes a page."""
 
@@ -131,7 +140,9 @@ class Feedback(HTMLExporter):
         self.template_paths = [*self.template_paths, str(TEMPLATE.parent)]
         self.template_file = TEMPLATE.name
         self.register_filter("points", points)
-        self.environment.globals["once"] = self._once
+        self._markdown = self.environment.filters["markdown2html"]
+        self.register_filter("markdown2html", self._marked_down)
+        self.environment.globals.update(known=self._known, once=self._once)
         self.pieces = Pieces()
 
     def _init_preprocessors(self):
@@ -197,9 +208,22 @@ class Feedback(HTMLExporter):
             lambda: _pygments_highlight(source or " ", _formatter(lexer), lexer, told),
         )
 
+    @pass_context
+    def _marked_down(self, context, source):
+        """Markdown as the filter in the course's settings has it."""
+        about = ["markdown", context.get("cell", {}).get("attachments", {}), source]
+        return self.pieces.of(json.dumps(about), lambda: self._markdown(context, source))
+
+    def _known(self, cells):
+        """[(cell, its piece of the page, or None where that is not made yet)]"""
+        return [(cell, self.pieces.get(self._all_of(cell))) for cell in cells]
+
     def _once(self, cell, caller):
         """What the template's `caller` makes of a cell; of one that is the same in all it is made once."""
-        return self.pieces.of(json.dumps([self._about, cell]), caller)
+        return self.pieces.of(self._all_of(cell), caller)
+
+    def _all_of(self, cell):
+        return json.dumps([self._about, cell])
 
     def _word_anew(self, nb):
         """The verdicts in today's words; the notebook has those of the day it was graded."""
@@ -223,7 +247,7 @@ class Feedback(HTMLExporter):
                 self.log.warning("%s: its record is damaged, so no example is shown (%r)", name, error)
                 continue
             position = len(cell.outputs) - 1  # the last one says the points
-            cell.outputs.insert(position, {"output_type": "display_data", "data": {"text/html": made}, "metadata": {}})
+            cell.outputs.insert(position, nbformat.v4.new_output("display_data", {"text/html": made}))
 
 
 class BareFeedback(Feedback):

@@ -92,7 +92,7 @@ def generate(course, grades, jobs):
 def _prepare(course, shared):
     """Make what is in everybody's pages before there are several processes, each of which would make it."""
     with suppress(Exception):  # a page that cannot be made is the students', and is told of there
-        _converter(course, shared, bare=False).prepare(course.notebooks.values())
+        _converter(course, shared, False).prepare(course.notebooks.values())
 
 
 def _pages(course, shared, of_student, bare=False):
