@@ -55,9 +55,9 @@ class FeedbackPages(GenerateFeedback):
     takes as long as the pages.
     """
 
-    def __init__(self, course, shared, changed=None):
-        """shared: the folder in which the processes of a run leave each other parts of pages
-        changed: traitlets' Config of settings that are others than the course's this time
+    def __init__(self, course, changed=None, shared=None):
+        """changed: traitlets' Config of settings that are others than the course's this time
+        shared: the folder in which the processes of a run leave each other parts of pages
         """
         config = settings(course)
         config.merge(Config(GenerateFeedback={"force": True}, HTMLExporter={"template_name": "feedback"}))

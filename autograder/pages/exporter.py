@@ -116,7 +116,7 @@ def _digest(text):
 
 
 class Owned(nbformat.NotebookNode):
-    """A notebook that is nobody else's, so that nbconvert need not copy it before it makes a page."""
+    """A notebook that is nobody else's, so that it need not be copied before it is changed; nbconvert does that, too."""
 
     def __deepcopy__(self, _):
         return self
@@ -151,13 +151,11 @@ class Feedback(HTMLExporter):
 
     def from_file(self, file_stream, resources=None, **kwargs):
         """As nbconvert's, but for the validation, which takes as long as the page; the grader has written this file."""
-        return self._of(nbformat.v4.reads(file_stream.read()), resources, **kwargs)
+        return self.from_notebook_node(Owned(nbformat.v4.reads(file_stream.read())), resources, **kwargs)
 
     def from_notebook_node(self, nb, resources=None, **kwargs):
-        return self._of(nbformat.from_dict(nb), resources, **kwargs)  # a copy
-
-    def _of(self, nb, resources, **kwargs):
-        """The page of a notebook, which is changed on the way."""
+        if not isinstance(nb, Owned):
+            nb = nbformat.from_dict(nb)  # a copy
         self._word_anew(nb)
         if not self.bare:
             try:
