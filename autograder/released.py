@@ -90,14 +90,20 @@ class Released:
 
     def section(self, name: str) -> str:
         """The heading (`## …`, as it is read) of the part of the notebook that leads to an exercise or a question."""
-        found = ""
+        return self._sections.get(name, "")
+
+    @cached_property
+    def _sections(self):
+        """{cell nbgrader knows about, also without "-solution": the heading above it}"""
+        found, sections = "", {}
         for cell in self.notebook.cells:
             if cell.cell_type == "markdown":
                 headings = re.findall(r"^(?:## (?!Exercise)|#+ (?=Question))(.+)", cell.source, re.MULTILINE)
                 found = headings[-1].replace("`", "").strip() if headings else found
-            if cell.metadata.get("nbgrader", {}).get("grade_id") in (name, f"{name}-solution"):
-                return found
-        return ""
+            if name := cell.metadata.get("nbgrader", {}).get("grade_id"):
+                sections.setdefault(name, found)
+                sections.setdefault(name.removesuffix("-solution"), found)
+        return sections
 
     @property
     def title(self) -> str:

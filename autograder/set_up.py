@@ -30,6 +30,8 @@ LOADED_MOST = (  # each line by a process of its own
     "matplotlib.pyplot matplotlib_inline.backend_inline scipy.spatial.transform IPython.core.interactiveshell rich.progress",
 )
 OLDEST_UV = (0, 5)  # of those on PATH
+# For a network with an authority of its own, which this machine knows and uv does not; the second is for older ones.
+SYSTEMS_CERTIFICATES = {"UV_SYSTEM_CERTS": "true", "UV_NATIVE_TLS": "true"}
 
 
 MADE = "AUTOGRADER_MADE_ENVIRONMENT"  # in the environment of the interpreter that ours goes on in
@@ -136,7 +138,13 @@ def _with_uv(base, folder, packages, lock):
         uv = folder / "bin" / "uv"
     _say("  installing the packages with uv …")
     python = folder / "bin" / "python"
-    _run([uv, "pip", "install", "--python", python, *packages], "Downloaded", "Downloading")
+    install = [uv, "pip", "install", "--python", python, *packages]
+    try:
+        _run(install, "Downloaded", "Downloading")
+    except StepFailed as failure:
+        if "certificate" not in str(failure):
+            raise
+        _run(install, "Downloaded", "Downloading", SYSTEMS_CERTIFICATES)
     if sys.dont_write_bytecode:  # else the first import does it, within seconds
         _compile(python)
 
@@ -178,13 +186,14 @@ def _pip(base, folder):
     return [base, *command, "--python", python]
 
 
-def _run(step, counted=None, total=None):
+def _run(step, counted=None, total=None, settings=()):
     """Run a step of the set-up; returns what it printed. On a terminal its latest line is shown meanwhile, and how many
-    lines began with the word `counted`, of how many with the word `total`.
+    lines began with the word `counted`, of how many with the word `total`. settings: added to the environment.
     """
     lines, words, shown = [], Counter(), counted and sys.stderr.isatty()
     # Packages in PYTHONPATH, where ROS has its own, are not in `.venv`.
     variables = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    variables.update(settings)
     options = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "env": variables}
     try:
         with subprocess.Popen(step, encoding="utf-8", errors="replace", **options) as process:

@@ -208,6 +208,28 @@ def test_pip_is_used_where_uv_is_not_to_be_had_or_fails(root, tools, monkeypatch
     assert why == "other bytes" or has_the_package(python)
 
 
+@pytest.mark.parametrize("knows", ["UV_SYSTEM_CERTS", "UV_NATIVE_TLS"])
+def test_uv_takes_the_systems_certificates_where_its_own_do_not_serve(root, tools, monkeypatch, capsys, knows):
+    needs_a_package(root)
+    for variable in ("UV_SYSTEM_CERTS", "UV_NATIVE_TLS"):
+        monkeypatch.delenv(variable, raising=False)
+    refused = (
+        f"echo asked >> {root}/log; echo error: it cannot be fetched; echo cause: invalid peer certificate; exit 2"
+    )
+    pretend_uv(tools, f'[ "${knows}" = true ] && exec {UV} "$@"\n{refused}')
+    assert has_the_package(set_up.make(root))
+    said = capsys.readouterr().err
+    assert "with uv" in said and "pip" not in said
+    assert (root / "log").read_text() == "asked\n"  # those of its own first: there may be no others
+
+
+def test_uv_that_fails_for_another_reason_is_not_tried_again(root, tools):
+    needs_a_package(root)
+    pretend_uv(tools, f"echo asked >> {root}/log; echo error: the disk is full; exit 2")
+    set_up.make(root)
+    assert (root / "log").read_text() == "asked\n"
+
+
 @pytest.mark.parametrize("with_uv", [True, False])
 def test_other_bytes_than_the_locks_are_not_installed(root, tools, with_uv, slow):
     needs_a_package(root)

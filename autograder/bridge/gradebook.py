@@ -9,6 +9,7 @@ import logging
 import shutil
 import sqlite3
 import time
+from contextlib import closing
 from importlib import resources
 
 from nbgrader.api import (
@@ -22,7 +23,7 @@ from nbgrader.api import (
     SubmittedAssignment,
     SubmittedNotebook,
 )
-from sqlalchemy import Engine, create_engine, event, func, inspect, or_, select, update
+from sqlalchemy import Engine, create_engine, event, func, inspect, literal_column, or_, select, update
 from sqlalchemy.exc import DatabaseError, OperationalError
 
 from ..course import ASSIGNMENT, CourseError
@@ -180,20 +181,41 @@ class Writer:
             select(of.student_id, of.id, of.timestamp).where(of.assignment_id == assignment.id)
         )
         done = {student: values for student, *values in asked}
+        added_up = self._added_up()
         rows = [EXPORTED]
         for who in sorted(self.gradebook.students, key=lambda who: (who.last_name or "", who.first_name or "", who.id)):
             when, points, penalty = None, 0.0, 0.0
             if who.id in done:
                 identifier, when = done[who.id]
-                # For each by itself, as nbgrader asks, or SQLite would add the points up in another order.
-                of_one = select(of.score, of.late_submission_penalty).where(of.id == identifier)
-                points, penalty = self.gradebook.db.execute(of_one).one()
+                points, penalty = added_up(identifier)
             told = who.id, who.last_name, who.first_name, who.email
             total = max(0.0, points - penalty)
             rows.append((ASSIGNMENT, due, when, *told, points, penalty, total, most))
         if any(by_hand.values()):
             rows = [(*rows[0], BY_HAND), *((*row, by_hand.get(row[3], "")) for row in rows[1:])]
         replace(path, table(rows))
+
+    def _added_up(self):
+        """From the id of a submission to (points, penalty), to the last digit as nbgrader asks for them: for each by itself.
+
+        For each of them SQLite reads all grades. So they are read once, and added up by SQLite in that same order.
+        """
+        ask, of = self.gradebook.db.execute, SubmittedAssignment
+        if not self.db_url.startswith("sqlite"):
+            return lambda identifier: ask(select(of.score, of.late_submission_penalty).where(of.id == identifier)).one()
+        notebook, sums = SubmittedNotebook, []
+        scores = select(notebook.assignment_id, Grade.score).join(notebook, Grade.notebook_id == notebook.id)
+        penalties = select(notebook.assignment_id, notebook.late_submission_penalty)
+        for numbers in (
+            scores.order_by(literal_column("grade.rowid")),
+            penalties.order_by(literal_column("submitted_notebook.rowid")),
+        ):
+            with closing(sqlite3.connect(":memory:")) as memory:
+                memory.execute("CREATE TABLE n (id, place, number, PRIMARY KEY (id, place)) WITHOUT ROWID")
+                rows = ((identifier, place, number) for place, (identifier, number) in enumerate(ask(numbers)))
+                memory.executemany("INSERT INTO n VALUES (?, ?, ?)", rows)
+                sums.append(dict(memory.execute("SELECT id, coalesce(sum(number), 0.0) FROM n GROUP BY id")))
+        return lambda identifier: tuple(found.get(identifier, 0.0) for found in sums)
 
     def grades(self):
         """What students are told of their points, {student: {notebook: NotebookGrades}}."""

@@ -14,6 +14,7 @@ from nbgrader.exchange.default import Exchange
 from traitlets.config import Config
 
 from ..course import ASSIGNMENT, CourseError
+from ..grading.marks import CellGrade, NotebookGrades
 from .settings import settings
 
 logger = logging.getLogger("traitlets")  # nbgrader's; a failure is told by ours, and so is progress
@@ -54,8 +55,10 @@ class FeedbackPages(GenerateFeedback):
     takes as long as the pages.
     """
 
-    def __init__(self, course, changed=None):
-        """changed: traitlets' Config of settings that are others than the course's this time"""
+    def __init__(self, course, changed=None, shared=None):
+        """changed: traitlets' Config of settings that are others than the course's this time
+        shared: the folder in which the processes of a run leave each other parts of pages
+        """
         config = settings(course)
         config.merge(Config(GenerateFeedback={"force": True}, HTMLExporter={"template_name": "feedback"}))
         config.merge(changed or {})
@@ -63,6 +66,14 @@ class FeedbackPages(GenerateFeedback):
         self.exporter = self.exporter_class(parent=self, config=self.config)
         for step in self.preprocessors:
             self.exporter.register_preprocessor(step)
+        self.exporter.pieces.folder = shared
+
+    def prepare(self, notebooks):
+        """Make the parts of pages that everybody has, which are those of the Released notebooks."""
+        for released in notebooks:
+            cells = {name: CellGrade(0.0, most, False) for name, most in (released.points | released.questions).items()}
+            told = {"notebook": released.name, "grades": NotebookGrades(cells)}
+            self.exporter.from_notebook_node(released.notebook, {"nbgrader": told})
 
     def make(self, student, grades):
         """Write the pages of a student with these {notebook: NotebookGrades}; raises and returns as `call` does."""

@@ -5,6 +5,7 @@ import re
 
 import nbformat
 from nbconvert.preprocessors import Preprocessor
+from nbformat import NotebookNode
 from nbgrader.utils import is_grade
 from traitlets import Int
 
@@ -43,7 +44,7 @@ def shortened(nb, budget):
     All that still fits is kept: first of the cells that are asked for, and then of the others, from the top. The verdicts
     are kept, but for characters of a student's in them that would set the grader's words in another order, or hide them.
     """
-    nb, left = nbformat.from_dict(nb), budget  # a copy, sooner than by copy.deepcopy
+    nb, left = NotebookNode({**nb, "metadata": NotebookNode(nb.metadata), "cells": list(map(_own, nb.cells))}), budget
 
     def fits(text, weight=1, around=0):
         nonlocal left
@@ -94,9 +95,19 @@ def _text(output):
     return "".join(map(str, parts))
 
 
+def _own(cell):
+    """A copy of a cell, and of what a step towards the page may change in it: what it says of it."""
+    metadata = NotebookNode(cell.metadata)
+    if metadata.get("nbgrader"):
+        metadata.nbgrader = NotebookNode(metadata.nbgrader)
+    return NotebookNode({**cell, "metadata": metadata})
+
+
 def _in_order(output):
-    """An output of the grader's, in which a student's error message may stand."""
-    data = output.get("data", {})
+    """A copy of an output of the grader's, in which a student's error message may stand."""
+    if "data" not in output:
+        return output
+    data = NotebookNode(output.data)
     for mime in [mime for mime, text in data.items() if mime.startswith("text/") and isinstance(text, str)]:
         data[mime] = STACKED.sub(r"\1", TURNING.sub("", data[mime]))
-    return output
+    return NotebookNode({**output, "data": data})

@@ -2,7 +2,7 @@
 
 import contextlib
 import json
-from functools import cache, lru_cache
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -53,7 +53,6 @@ def of_misconception(name, identifier):
     return scene.still() if scene else panel.example(verdict)
 
 
-@lru_cache(maxsize=500)  # students share mistakes, and a picture takes as long as a page
 def of_answer(name, text):
     """What public_example.find found, a public case and a student's answer to it, as a piece of a page.
 

@@ -3,19 +3,25 @@
 nbgrader_config.py names the exporter here, and the step before it.
 """
 
+import contextlib
 import copy
 import hashlib
+import html
 import json
+import os
 import re
+from functools import cache, partial
 from pathlib import Path
 
 import nbformat
+from jinja2 import pass_context
 from nbconvert.exporters import HTMLExporter, TemplateExporter
-from nbconvert.filters import Highlight2HTML
+from nbconvert.filters.highlight import _pygments_highlight
 from nbconvert.filters.widgetsdatatypefilter import WidgetsDataTypeFilter
 from nbgrader.api import Gradebook, Notebook, SubmittedAssignment
 from nbgrader.preprocessors import NbGraderPreprocessor
 from nbgrader.utils import is_grade, is_solution, is_task
+from pygments.formatters import HtmlFormatter
 
 from ..bridge.gradebook import grades as grades_in
 from ..grading.judge import opinion
@@ -62,22 +68,63 @@ class FetchGrades(NbGraderPreprocessor):
 
 
 class Pieces:
-    """Texts that were made of other texts, and take about as long to make as the page: the class's cells are mostly the same."""
+    """Texts that were made of other texts, and take about as long to make as the page: the class's cells are mostly the same.
 
-    def __init__(self):
-        self.known, self.size = {}, 0
+    folder: where the processes of a run leave them to each other
+    """
+
+    def __init__(self, folder=None):
+        self.folder, self.known, self.size, self.left = folder, {}, 0, 0
+
+    def get(self, text):
+        """What was made of this text, or None where this process does not know."""
+        return self.known.get(_digest(text))
 
     def of(self, text, make):
         """What `make()` makes of this text, and of nothing else."""
-        digest = hashlib.sha256(text.encode()).digest()
+        digest = _digest(text)
         if digest not in self.known:
-            made = make()
+            made = self._found(digest)
+            if made is None:
+                made = make()
+                self._leave(digest, made)
             if self.size + len(made) > MOST_KEPT:
                 self.known, self.size = {}, 0
             self.known[digest] = made
             self.size += len(made)
             return made
         return self.known[digest]
+
+    def _found(self, digest):
+        """What another process has made, or None."""
+        if self.folder:
+            with contextlib.suppress(OSError):
+                return (self.folder / digest).read_bytes().decode("utf-8", "surrogatepass")
+        return None
+
+    def _leave(self, digest, made):
+        if self.folder and self.left + len(made) <= MOST_KEPT:
+            self.left += len(made)
+            with contextlib.suppress(OSError):
+                fresh = self.folder / f"{digest}.{os.getpid()}"
+                fresh.write_bytes(made.encode("utf-8", "surrogatepass"))
+                fresh.rename(self.folder / digest)
+
+
+def _digest(text):
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+class Owned(nbformat.NotebookNode):
+    """A notebook that is nobody else's, so that it need not be copied before it is changed; nbconvert does that, too."""
+
+    def __deepcopy__(self, _):
+        return self
+
+
+@cache
+def _formatter(lexer):
+    return HtmlFormatter(cssclass=html.escape(f" highlight hl-{lexer}"))
 
 
 class Feedback(HTMLExporter):
@@ -93,8 +140,10 @@ class Feedback(HTMLExporter):
         self.template_paths = [*self.template_paths, str(TEMPLATE.parent)]
         self.template_file = TEMPLATE.name
         self.register_filter("points", points)
-        self.environment.globals["once"] = self._once
-        self._pieces = Pieces()
+        self._markdown = self.environment.filters["markdown2html"]
+        self.register_filter("markdown2html", self._marked_down)
+        self.environment.globals.update(known=self._known, once=self._once)
+        self.pieces = Pieces()
 
     def _init_preprocessors(self):
         super()._init_preprocessors()
@@ -102,10 +151,11 @@ class Feedback(HTMLExporter):
 
     def from_file(self, file_stream, resources=None, **kwargs):
         """As nbconvert's, but for the validation, which takes as long as the page; the grader has written this file."""
-        return self.from_notebook_node(nbformat.v4.reads(file_stream.read()), resources, **kwargs)
+        return self.from_notebook_node(Owned(nbformat.v4.reads(file_stream.read())), resources, **kwargs)
 
     def from_notebook_node(self, nb, resources=None, **kwargs):
-        nb = nbformat.from_dict(nb)  # a copy
+        if not isinstance(nb, Owned):
+            nb = nbformat.from_dict(nb)  # a copy
         self._word_anew(nb)
         if not self.bare:
             try:
@@ -133,12 +183,12 @@ class Feedback(HTMLExporter):
         """
         made, language = self._init_resources(resources), nb.metadata.get("language_info", {})
         lexer = language.get("pygments_lexer", language.get("name"))
-        self.register_filter("highlight_code", Highlight2HTML(pygments_lexer=lexer, parent=self))
+        self.register_filter("highlight_code", partial(self._coloured, lexer or "ipython3"))
         outputs = WidgetsDataTypeFilter(notebook_metadata=self._nb_metadata, parent=self, resources=made)
         self.register_filter("filter_data_type", outputs)
         nb.metadata.pop(RECORD, None)  # the cells have what is shown of it
         self._about = nb.metadata
-        page, made = TemplateExporter.from_notebook_node(self, nb, made, **kwargs)
+        page, made = TemplateExporter.from_notebook_node(self, Owned(nb), made, **kwargs)
         self._nb_metadata.clear()  # one page after the other is made
         return NAMELESS.sub(f'<img alt="{NO_NAME}" ', page), made
 
@@ -148,9 +198,30 @@ class Feedback(HTMLExporter):
             nb, resources = step(nb, resources)
         return nb, resources
 
+    def _coloured(self, lexer, source, metadata):
+        """Code as nbconvert's Highlight2HTML colours it; to make the formatter takes as long as to colour a cell."""
+        told = {"magics_language": metadata["magics_language"]} if "magics_language" in metadata else {}
+        return self.pieces.of(
+            json.dumps(["code", lexer, told, source]),
+            lambda: _pygments_highlight(source or " ", _formatter(lexer), lexer, told),
+        )
+
+    @pass_context
+    def _marked_down(self, context, source):
+        """Markdown as the filter in the course's settings has it."""
+        about = ["markdown", context.get("cell", {}).get("attachments", {}), source]
+        return self.pieces.of(json.dumps(about), lambda: self._markdown(context, source))
+
+    def _known(self, cells):
+        """[(cell, its piece of the page, or None where that is not made yet)]"""
+        return [(cell, self.pieces.get(self._all_of(cell))) for cell in cells]
+
     def _once(self, cell, caller):
         """What the template's `caller` makes of a cell; of one that is the same in all it is made once."""
-        return self._pieces.of(json.dumps([self._about, cell]), caller)
+        return self.pieces.of(self._all_of(cell), caller)
+
+    def _all_of(self, cell):
+        return json.dumps([self._about, cell])
 
     def _word_anew(self, nb):
         """The verdicts in today's words; the notebook has those of the day it was graded."""
@@ -168,12 +239,13 @@ class Feedback(HTMLExporter):
             if name not in found or not is_test(cell) or not cell.outputs:
                 continue
             try:
-                shown = {"text/html": examples.of_answer(name, found[name])}
+                text = found[name]
+                made = self.pieces.of(json.dumps(["example", name, text]), lambda: examples.of_answer(name, text))
             except Exception as error:  # a damaged record, or an answer that cannot be drawn
                 self.log.warning("%s: its record is damaged, so no example is shown (%r)", name, error)
                 continue
             position = len(cell.outputs) - 1  # the last one says the points
-            cell.outputs.insert(position, {"output_type": "display_data", "data": shown, "metadata": {}})
+            cell.outputs.insert(position, nbformat.v4.new_output("display_data", {"text/html": made}))
 
 
 class BareFeedback(Feedback):

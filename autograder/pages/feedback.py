@@ -6,8 +6,11 @@
 import hashlib
 import json
 import os
+import tempfile
+from contextlib import suppress
 from dataclasses import asdict
 from functools import cache, partial
+from pathlib import Path
 from urllib.parse import quote
 
 from sqlalchemy.exc import SQLAlchemyError
@@ -73,28 +76,41 @@ def generate(course, grades, jobs):
     Yields (student, None or what went wrong) as they are done.
     """
     too_much = {}
-    for (student, told), found in Processes(partial(_pages, course), jobs).each(grades.items()):
-        if isinstance(found, Failure):
-            too_much[student] = told
-        else:
-            yield student, found
-    for (student, _), found in Processes(partial(_pages, course, bare=True), jobs).each(too_much.items()):
-        yield student, f"no feedback: {found.words}" if isinstance(found, Failure) else found
+    with tempfile.TemporaryDirectory(prefix="feedback-") as folder:
+        shared = Path(folder)
+        if grades:
+            _prepare(course, shared)
+        for (student, told), found in Processes(partial(_pages, course, shared=shared), jobs).each(grades.items()):
+            if isinstance(found, Failure):
+                too_much[student] = told
+            else:
+                yield student, found
+        for (student, _), found in Processes(partial(_pages, course, bare=True, shared=shared), jobs).each(
+            too_much.items()
+        ):
+            yield student, f"no feedback: {found.words}" if isinstance(found, Failure) else found
 
 
-def _pages(course, of_student, bare=False):
-    return _one(course, *of_student, bare)
+def _prepare(course, shared):
+    """Make what is in everybody's pages before there are several processes, each of which would make it."""
+    with suppress(Exception):  # a page that cannot be made is the students', and is told of there
+        _converter(course, False, shared).prepare(course.notebooks.values())
 
 
-def _one(course, student, grades, bare=False):
+def _pages(course, of_student, bare=False, shared=None):
+    return _one(course, *of_student, bare, shared)
+
+
+def _one(course, student, grades, bare=False, shared=None):
     """Write a student's pages whatever is in the notebooks; None, or what they lack and why.
 
     bare: leave out from the start what the student wrote and displayed, because a page with it took too much
+    shared: the folder in which the processes of a run leave each other what they make
     """
     told = f"{WITHOUT}: with it they took more time or memory than is allowed" if bare else None
     for write in (_verdicts,) if bare else (_whole, _verdicts):
         try:
-            return write(course, student, grades) or told
+            return write(course, student, grades, shared=shared) or told
         except Exception as error:  # whatever it is, the others' pages and the class report are not to be lost
             if not Failure.of(error, OSError, SQLAlchemyError).of_content:
                 return f"no feedback: {_words(error)}"  # less of it would come to the same, or stay for good
@@ -112,26 +128,25 @@ def _words(error):
     return kind + " ".join(str(error).split())[:300]
 
 
-def _whole(course, student, grades, bare=False):
+def _whole(course, student, grades, bare=False, shared=None):
     problem = None
     if any(course.autograded(student).glob("*.ipynb")):
-        problem = _converter(course, bare).make(student, grades)
+        problem = _converter(course, bare, shared).make(student, grades)
     course.feedback(student).mkdir(parents=True, exist_ok=True)
     replace(course.feedback(student) / SUMMARY, summary(course, student, grades))
     return problem
 
 
-def _verdicts(course, student, grades):
+def _verdicts(course, student, grades, shared):
     """Pages without what the student wrote and displayed."""
-    return _whole(course, student, grades, bare=True)
+    return _whole(course, student, grades, True, shared)
 
 
 @cache
-def _converter(course, bare):
-    """nbgrader's, which a worker makes once."""
-    if not bare:
-        return FeedbackPages(course)
-    return FeedbackPages(course, Config(GenerateFeedback={"exporter_class": "autograder.pages.exporter.BareFeedback"}))
+def _converter(course, bare, shared):
+    """nbgrader's, which a process makes once."""
+    made = Config(GenerateFeedback={"exporter_class": "autograder.pages.exporter.BareFeedback"}) if bare else None
+    return FeedbackPages(course, made, shared)
 
 
 def _least(course, student, grades):

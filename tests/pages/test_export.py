@@ -2,8 +2,11 @@
 
 import csv
 import io
+import random
 
 import pytest
+from nbgrader.api import Grade, SubmittedAssignment, SubmittedNotebook
+from sqlalchemy import event, select
 from support import points, points_by_hand, run
 
 from autograder.bridge.gradebook import Writer
@@ -202,3 +205,27 @@ def test_the_command_knows_every_format(course, slow):
     for name in export.FORMATS:
         code, said = run(course, "export", "--format", name)
         assert code == 0 and said.startswith(",".join(table(course, name)[0]) + "\n")
+
+
+def test_points_are_added_up_as_nbgrader_does_to_the_last_digit_and_in_two_questions(course):
+    draw, asked = random.Random(4), []
+    with Writer(course) as writer:
+        for number in draw.sample(range(100), 9):
+            put(writer, f"s{number}", 1.5)
+        book = writer.gradebook.db
+        for grade in book.execute(select(Grade)).scalars():
+            grade.auto_score, grade.extra_credit = (
+                draw.choice([None, 0.1, 1 / 3, 1e16]),
+                draw.choice([None, 0.7, -1e16]),
+            )
+            grade.manual_score = draw.choice([None, None, 2 / 3])
+        for notebook in book.execute(select(SubmittedNotebook)).scalars():
+            notebook.late_submission_penalty = draw.choice([None, 0.1, 0.2, 1 / 7])
+        book.commit()
+        of = SubmittedAssignment
+        alone = {found.id: (found.score, found.late_submission_penalty) for found in book.execute(select(of)).scalars()}
+        event.listen(book.get_bind(), "before_cursor_execute", lambda *statement: asked.append(statement))
+        added_up = writer._added_up()
+        assert {identifier: added_up(identifier) for identifier in alone} == alone and len(asked) == 2
+        assert added_up("who has no notebooks") == (0.0, 0.0)
+    assert len(alone) == 9 and len(set(alone.values())) > 5

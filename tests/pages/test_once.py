@@ -1,19 +1,23 @@
 """What is made once for many pages is what would be made for each: of exactly the same content, and of nothing else."""
 
 import json
+import shutil
+from collections import defaultdict
+from functools import partial
 from pathlib import Path
 
 import nbformat
 import pytest
-from hypothesis import given, settings
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from nbgrader.server_extensions import formgrader
 from support import ROOT
 
+from autograder.bridge.nbgrader_api import FeedbackPages
 from autograder.course import Course
 from autograder.grading import digests
 from autograder.grading.marks import CellGrade, NotebookGrades
-from autograder.pages import examples, exporter
+from autograder.pages import examples, exporter, feedback
 from autograder.pages.exporter import Feedback, Pieces
 
 ASKED = {"grade": True, "solution": True, "locked": False, "grade_id": "question", "schema_version": 3}
@@ -94,10 +98,8 @@ def test_a_page_is_the_same_whatever_was_made_before_it(new_exporter, several):
 
 def test_a_cell_that_is_the_same_is_made_once(new_exporter, monkeypatch):
     coloured = []
-    make = exporter.Highlight2HTML.__call__
-    monkeypatch.setattr(
-        exporter.Highlight2HTML, "__call__", lambda *args, **kw: coloured.append(1) or make(*args, **kw)
-    )
+    make = exporter._pygments_highlight
+    monkeypatch.setattr(exporter, "_pygments_highlight", lambda *args: coloured.append(1) or make(*args))
     maker, cell = new_exporter(), nbformat.v4.new_code_cell("x = 1", id="a")
     pages = {page(maker, notebook([cell, cell]), NotebookGrades()) for _ in range(3)}
     assert len(coloured) == len(pages) == 1
@@ -112,6 +114,69 @@ def test_what_is_kept_is_bounded_and_right(texts):
         for text in texts:
             assert pieces.of(text, lambda text=text: text * 10) == text * 10
             assert sum(map(len, pieces.known.values())) == pieces.size <= 50
+
+
+@settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.lists(notebooks(), min_size=2, max_size=4))
+def test_a_page_is_the_same_whichever_process_made_its_parts(new_exporter, tmp_path, several):
+    """Two exporters stand for two processes, which make the notebooks in turn."""
+    together = [new_exporter(), new_exporter()]
+    for one in together:
+        one.pieces.folder = tmp_path
+    for turn, (one, grades) in enumerate(several):
+        assert page(together[turn % 2], one, grades) == page(new_exporter(), one, grades)
+
+
+def test_what_one_process_has_made_another_need_not(tmp_path):
+    made = []
+
+    def make(text):
+        made.append(text)
+        return f"<{text}>"
+
+    for pieces in (Pieces(tmp_path), Pieces(tmp_path), Pieces()):
+        for text in ("a", "b", "\ud800", "a"):
+            assert pieces.of(text.encode("utf-8", "backslashreplace").decode(), partial(make, text)) == f"<{text}>"
+    assert made == ["a", "b", "\ud800"] * 2  # the last one shares no folder
+
+
+def test_what_cannot_be_left_to_others_is_made_by_each(tmp_path, monkeypatch):
+    gone = tmp_path / "gone"
+    assert [Pieces(gone).of("a", lambda: "made") for _ in range(2)] == ["made"] * 2
+    monkeypatch.setattr(exporter, "MOST_KEPT", 5)
+    pieces = Pieces(tmp_path)
+    for text in "abc":
+        pieces.of(text, lambda text=text: text * 3)
+    assert len(list(tmp_path.iterdir())) == 1  # no more than that many characters
+
+
+def test_what_everybody_has_is_made_before_a_class_is(tmp_path, monkeypatch):
+    """Of released notebooks, handed in as they are, nothing is coloured or set anew."""
+    course, made = Course(ROOT), []
+    pages = FeedbackPages(course, shared=tmp_path)
+    pages.prepare(course.notebooks.values())
+    monkeypatch.setattr(exporter, "_pygments_highlight", lambda *args: made.append(args) or "")
+    monkeypatch.setattr(pages.exporter, "_markdown", lambda *args: made.append(args) or "")
+    for released in course.notebooks.values():
+        told = {"notebook": released.name, "grades": NotebookGrades(defaultdict(lambda: CellGrade(0.0, 1.0, False)))}
+        renamed = nbformat.from_dict(released.notebook)
+        for number, cell in enumerate(renamed.cells):
+            cell.id = f"cell-{number}"  # as the grader numbers them
+        pages.exporter.from_notebook_node(renamed, {"nbgrader": told})
+    assert not made
+
+
+def test_pages_are_made_with_what_was_prepared(course, tmp_path, monkeypatch):
+    made, make = [], feedback.FeedbackPages
+    monkeypatch.setattr(feedback, "FeedbackPages", lambda *args: made.append(args) or make(*args))
+    shutil.copytree(course.release, course.autograded("ada"))
+    grades = {
+        name: NotebookGrades({cell: CellGrade(0.0, 1.0, False) for cell in released.points | released.questions})
+        for name, released in course.notebooks.items()
+    }
+    feedback._prepare(course, tmp_path)
+    assert feedback._one(course, "ada", grades, shared=tmp_path) is None
+    assert len(made) == 1 and len(list(course.feedback("ada").glob("*.html"))) == len(grades) + 1
 
 
 # --- examples in the report -------------------------------------------------------------------------------------------
