@@ -12,14 +12,13 @@ import html
 import json
 import math
 import re
-from importlib import resources
 from pathlib import Path
 
 import numpy as np
 
 from .camera import FIELD_OF_VIEW, NEAREST, VIEWS, Camera
 from .drawing import grid
-from .meshcat_commands import block, changes, delete, properties, set_object, set_property, set_transform
+from .meshcat_commands import block, changes, delete, folder, properties, set_object, set_property, set_transform
 from .picture import webp
 from .shapes import BESIDE
 from .shapes import path as node_path
@@ -42,7 +41,7 @@ def script():
 
 def _viewer():
     """Return meshcat's viewer, a bundle of numbered modules, without those that these pages never use."""
-    bundle = resources.files("meshcat").joinpath("viewer", "dist", "main.min.js").read_text(encoding="utf-8")
+    bundle = (folder() / "viewer/dist/main.min.js").read_text(encoding="utf-8")
     modules = re.split(r"(?<=[{,])(?=\d+:(?:function\(|\([\w,]*\)=>|\w=>))", bundle)
     numbered = ((module.partition(":")[0], module) for module in modules)
     return "".join(f"{number}:()=>{{}}," if number in UNUSED else module for number, module in numbered)

@@ -76,10 +76,11 @@ def _paint(image, faces):
         return
     sheet = image.crop((left, top, right, bottom))
     cover = Image.new("L", sheet.size)
+    colors, opacities = ImageDraw.Draw(sheet), ImageDraw.Draw(cover)
     for _, pixels, shade in faces:
         place = [number - (left, top)[i % 2] for i, number in enumerate(pixels)]
-        ImageDraw.Draw(sheet).polygon(place, fill=shade[:3])
-        ImageDraw.Draw(cover).polygon(place, fill=shade[3])
+        colors.polygon(place, fill=shade[:3])
+        opacities.polygon(place, fill=shade[3])
     image.paste(sheet, (left, top), cover)
 
 
@@ -100,6 +101,8 @@ def _font(name, size):
 
 def webp(image):
     """Return an image as a WebP file (bytes) for a page: without loss, but with colours off by up to 12 of 255 for its size."""
+    from PIL import WebPImagePlugin  # noqa: F401, or Pillow would load all its formats to find this one
+
     file = io.BytesIO()
     image.point(COLORS).save(file, "WEBP", lossless=True, quality=30, method=3)
     return file.getvalue()
