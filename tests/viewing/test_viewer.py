@@ -792,11 +792,12 @@ def test_the_page_draws_the_scene_as_seen_by_the_camera(viewer, dom):
       const frames = window.viewer.scene_tree.find(["meshcat", "frames"]).children;
       const v = window.viewer;
       const p = frames.c.object.position.clone().setFromMatrixPosition(frames.c.object.matrixWorld).project(v.camera);
-      document.body.dataset.found = JSON.stringify({names: Object.keys(frames), place: [p.x, p.y]});
+      const stray = [...document.body.childNodes].filter(node => node.nodeType === 3).map(node => node.data.trim()).join("");
+      document.body.dataset.found = JSON.stringify({names: Object.keys(frames), place: [p.x, p.y], stray});
     }, 3000)</script></body>"""
     elements = dom(page.render(found, "a", "overview").replace("</body>", probe), *SOFTWARE_WEBGL)
     found = html.unescape(re.search(r'data-found="([^"]*)"', elements)[1])
-    assert '"names":["a","b","c"]' in found
+    assert '"names":["a","b","c"]' in found and '"stray":""' in found
     x, y = camera.project(viewer.lookup("a", "c")[:3, 3])[0]
     width, height = map(float, re.search(r"<canvas[^>]*width: ([\d.]+)px; height: ([\d.]+)px", elements).groups())
     place = [float(v) for v in re.search(r'"place":\[([^,]*),([^\]]*)\]', found).groups()]
