@@ -437,28 +437,6 @@ def test_nothing_is_run_that_others_have_left_in_the_browser(page, server):
     assert page.evaluate("() => window.evil") is None
 
 
-def test_figures_of_cells_that_are_not_attached(page, server):
-    """In this mode, JupyterLab has only the cells in view in its page: those that carry may come later."""
-    written(server, "far", [FIGURES[0], *["# far\n" * 60] * 6, "frame(1)", "frame(2)", "frame(3)"])
-    notebook = Opened(page, server, "far")
-    notebook.run_all()
-    notebook.activate(9)
-    notebook.command("notebook:cut-cell")
-    notebook.activate(0)
-    notebook.command("notebook:paste-cell-above")
-    folder = server.folder / ".home/JUPYTERLAB_SETTINGS_DIR/@jupyterlab/notebook-extension"
-    folder.mkdir()
-    (folder / "tracker.jupyterlab-settings").write_text('{"windowingMode": "full"}')
-    try:
-        notebook = reopened(page, server, notebook)
-        waiting(notebook, 0)
-        assert page.locator("iframe").count() == 1
-        assert shown_in(notebook)[1:] == [1, 2]
-        assert shown_in(notebook) == [3, 1, 2]
-    finally:
-        shutil.rmtree(folder)
-
-
 def test_an_untrusted_copy_shows_the_pictures(page, server):
     path = saved(page, server, "4_inversion", "untrusted")
     notebook = nbformat.read(path, as_version=4)
