@@ -1,12 +1,18 @@
-"""How large and how fast the viewer's figures are: `python tests/benchmark_viewer.py`.
+"""How large and how fast the viewer's figures are: `python tests/benchmark_viewer.py [--against REVISION]`.
 
-Prints, for each kind of figure, the size of its HTML (goal: at most 350 kB) and the median time to make it once the
-modules are imported (goal: at most 300 ms); how many changes a second the kernel can turn into messages; and, with
-Chromium, how many a second arrive and are drawn while a slider is dragged in JupyterLab (goal: at least 25; here the
-graphics are computed without a graphics card). `--smallest` measures everything for a moment, to see that it works.
+Prints what the solved notebooks weigh, saved with their outputs and exported (goal: at most 800 kB each); the CPU seconds
+of importing transform_lab, of the first figure and of later ones (goals: 0.25, 0.5, 0.1), here and, in turn, in another
+revision; for each kind of figure, the size of its HTML and the median time to make it; how many changes a second the
+kernel can turn into messages; and, with Chromium, how many a second arrive and are drawn while a slider is dragged in
+JupyterLab (goal: at least 25; here the graphics are computed without a graphics card). `--smallest` measures everything for
+a moment, to see that it works.
 """
 
+import argparse
+import os
+import resource
 import statistics
+import subprocess
 import sys
 import tempfile
 import time
@@ -15,7 +21,10 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "source/transforms"))
 
+import nbformat
 import numpy as np
+from nbclient import NotebookClient
+from nbconvert import HTMLExporter
 from rich.console import Console
 from rich.table import Table
 from transform_lab import (
@@ -33,8 +42,34 @@ from transform_lab.viewing.drawing import draw
 from transform_lab.viewing.meshcat_commands import block, changes, properties
 from transform_lab.viewing.page import labels
 
-SMALLEST = "--smallest" in sys.argv
-REPEATS = 1 if SMALLEST else 7
+ROOT = Path(__file__).resolve().parent.parent
+parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+parser.add_argument("--against", metavar="REVISION", help="measure this revision, too")
+parser.add_argument("--smallest", action="store_true", help="measure everything for a moment")
+options = parser.parse_args()
+REPEATS = 1 if options.smallest else 7
+# What is run in a process of its own: importing alone, then figures, the last of which is measured.
+FIGURE = """
+import sys, time
+import numpy as np
+from transform_lab import Viewer, animate_rotation
+def moving(): return animate_rotation([0.5, 0.5, 0.5, 0.5])
+def still():
+    viewer = Viewer("a")
+    viewer.add_frame("b", np.array([[0.0, -1, 0, 1], [1, 0, 0, 0], [0, 0, 1, 0.2], [0, 0, 0, 1]]))
+    return viewer
+for make in {made}:
+    start = time.process_time()
+    make()._repr_mimebundle_()
+print(time.process_time() - start)
+"""
+TIMED = {
+    "import transform_lab": None,
+    "first figure": "[still]",
+    "first figure, an animation": "[moving]",
+    "later figure": "[still] * 5",
+    "later figure, an animation": "[still] + [moving] * 5",
+}
 STEP = np.array([[0.0, -1, 0, 1], [1, 0, 0, 0], [0, 0, 1, 0.2], [0, 0, 0, 1]])
 OBJECT = Pose(Point(0.6, -0.1, 0.7), Quaternion(0, 0, 0.38268343, 0.92387953))
 STOP = Pose(Point(0.529289, -0.170711, 0.7), Quaternion(0, 0, 0.38268343, 0.92387953))
@@ -71,6 +106,38 @@ def figures():
         "an approach, right and wrong": animate_approach(OBJECT, STOP, OBJECT),
         "a slider of 361 places": Viewer("a").interact(turn, degrees=(-180, 180)),
     }
+
+
+def cpu(made, root):
+    """CPU seconds of importing transform_lab as it is in `root`, the interpreter's start included, or of a figure."""
+    environment = {**os.environ, "PYTHONPATH": str(root / "source/transforms")}
+    code = "import transform_lab" if made is None else FIGURE.format(made=made)
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    run = subprocess.run([sys.executable, "-c", code], env=environment, cwd=root, check=True, capture_output=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    used = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return used if made is None else float(run.stdout)
+
+
+def weights(path):
+    """Bytes of a solved notebook with its outputs, and of the page that nbconvert makes of it."""
+    notebook = nbformat.read(path, as_version=4)
+    NotebookClient(notebook, resources={"metadata": {"path": str(path.parent)}}, store_widget_state=False).execute()
+    page, _ = HTMLExporter().from_notebook_node(notebook)
+    return len(nbformat.writes(notebook).encode()), len(page.encode())
+
+
+def compared(roots):
+    """Tables of the CPU seconds and of the notebooks' sizes in these folders, {revision: folder}."""
+    times = Table("CPU seconds", *roots)
+    for what, made in TIMED.items():
+        rounds = [[cpu(made, root) for root in roots.values()] for _ in range(REPEATS)]
+        times.add_row(what, *(f"{statistics.median(column):.3f}" for column in zip(*rounds)))
+    sizes = Table("solved notebook, saved / exported (kB)", *roots)
+    for path in sorted((ROOT / "source/transforms").glob("*.ipynb"))[: 1 if options.smallest else None]:
+        found = [weights(root / path.relative_to(ROOT)) for root in roots.values()]
+        sizes.add_row(path.stem, *(" / ".join(f"{size / 1000:.0f}" for size in pair) for pair in found))
+    return times, sizes
 
 
 def kernel_rate(seconds):
@@ -125,7 +192,7 @@ def browser_rate(seconds):
         temporary.cleanup()
 
 
-if __name__ == "__main__":
+def figure_table():
     table = Table("figure", "HTML (kB)", "time (ms)")
     for name, viewer in figures().items():
         viewer.figure()
@@ -135,9 +202,25 @@ if __name__ == "__main__":
             size = len(viewer.figure())
             times.append(1000 * (time.perf_counter() - start))
         table.add_row(name, f"{size / 1000:.0f}", f"{statistics.median(times):.0f}")
-    console = Console()
-    console.print(table)
-    console.print(f"changes a second, made by the kernel: {kernel_rate(0.1 if SMALLEST else 2):.0f}")
-    rate = browser_rate(1 if SMALLEST else 5)
+    return table
+
+
+if __name__ == "__main__":
+    console, roots = Console(), {"here": ROOT}
+    with tempfile.TemporaryDirectory() as folder:
+        git = ["git", "-C", str(ROOT), "worktree"]
+        if options.against:
+            roots[options.against] = Path(folder, "other")
+            subprocess.run(
+                [*git, "add", "--quiet", "--detach", str(roots[options.against]), options.against], check=True
+            )
+        try:
+            console.print(*compared(roots), sep="\n")
+        finally:
+            if options.against:
+                subprocess.run([*git, "remove", "--force", str(roots[options.against])], check=True)
+    console.print(figure_table())
+    console.print(f"changes a second, made by the kernel: {kernel_rate(0.1 if options.smallest else 2):.0f}")
+    rate = browser_rate(1 if options.smallest else 5)
     seen = f"{rate:.0f}" if rate is not None else "not measured, for there is no Chromium"
     console.print(f"changes a second, drawn while a slider is dragged in JupyterLab: {seen}")

@@ -83,6 +83,9 @@ class Opened:
     def command(self, name):
         self.page.evaluate("name => window.jupyterapp.commands.execute(name)", name)
 
+    def activate(self, cell):
+        self.page.evaluate("i => { window.jupyterapp.shell.currentWidget.content.activeCellIndex = i }", cell)
+
     def wait_until_idle(self):
         self.page.wait_for_function(
             "() => window.jupyterapp.shell.currentWidget?.sessionContext?.session?.kernel?.status === 'idle'"
@@ -108,12 +111,17 @@ class Opened:
               cell.type === "code" && JSON.stringify(cell.sharedModel.toJSON().outputs).includes("<iframe") ? [i] : [])"""
         )
 
+    def place(self, cell):
+        """Scroll to a cell and return where its scene is: an iframe."""
+        self.page.evaluate("i => window.jupyterapp.shell.currentWidget.content.scrollToItem(i, 'center')", cell)
+        notebook = self.page.locator(".jp-NotebookPanel:not(.lm-mod-hidden)")
+        place = notebook.locator(f'.jp-Cell[data-windowed-list-index="{cell}"] iframe').last
+        place.scroll_into_view_if_needed()
+        return place
+
     def scene(self, cell):
         """Scroll to a cell and return the frame in which its scene is drawn."""
-        self.page.evaluate("i => window.jupyterapp.shell.currentWidget.content.scrollToItem(i, 'center')", cell)
-        place = self.page.locator(f'.jp-Cell[data-windowed-list-index="{cell}"] iframe').last
-        place.scroll_into_view_if_needed()
-        return drawn(place)
+        return drawn(self.place(cell))
 
     def scene_with(self, selector):
         """Return the first scene that has such an element."""

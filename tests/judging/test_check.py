@@ -301,7 +301,7 @@ def test_the_picture_follows_the_panel_and_a_right_answer_has_none(shell):
     (panel_shown,) = [
         o.data["text/html"] for o in wrong.outputs if "text/html" in o.data and "<iframe" in o.data["text/html"]
     ]
-    assert "a (expected)" in panel_shown and "data:image/png" in panel_shown
+    assert "a (expected)" in panel_shown and "data:image/webp" in panel_shown
     assert "Your answer is the transform itself" in panel_shown
     assert all("<iframe" not in o.data.get("text/html", "") for o in right.outputs)
 

@@ -86,7 +86,7 @@ def test_a_mistake_is_a_still_picture_of_both_frames(shell):
     text, html = shown(shell, right, right.T)
     assert "frame frame_b in frame_a: position (0, 0, 0), x axis (0.866, 0.5, 0)" in text
     assert "frame mistake in frame_a: position (0, 0, 0), x axis (0.866, -0.5, 0)" in text
-    assert re.search(r'<img src="data:image/png;base64,[^"]{5000,}" alt="Scene in the fixed frame frame_a', html)
+    assert re.search(r'<img src="data:image/webp;base64,[^"]{5000,}" alt="Scene in the fixed frame frame_a', html)
     assert "<iframe" not in html
 
 

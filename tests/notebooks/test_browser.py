@@ -3,6 +3,8 @@
 The server runs under /user/x/, as behind a JupyterHub. Screenshots go to screenshots/, to be looked at.
 """
 
+import base64
+import gzip
 import io
 import re
 import shutil
@@ -138,9 +140,7 @@ for i in range(30):
 @pytest.fixture
 def live(page, server):
     """A notebook with live scenes, all its cells run."""
-    cells = [nbformat.v4.new_code_cell(source.strip()) for source in LIVE]
-    python = {"kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}}
-    nbformat.write(nbformat.v4.new_notebook(cells=cells, metadata=python), server.folder / "live.ipynb")
+    written(server, "live", LIVE)
     notebook = Opened(page, server, "live")
     notebook.run_all()
     return notebook
@@ -286,6 +286,155 @@ def test_controls_of_a_saved_notebook_show_what_was_computed_beforehand(page, se
     scene.locator("input[name=degrees]").fill("0")
     until(scene, "frame_b", about_z(-180))
     assert scene.locator("#text").inner_text().startswith("[[-1.")
+
+
+FIGURES = """
+from transform_lab import Viewer, tft
+def frame(x):
+    viewer = Viewer("a")
+    viewer.add_frame("b", tft.translation_matrix([x, 0, 0]))
+    return viewer
+""", "frame(1)", "frame(2)", "frame(3)", "frame(4)"  # fmt: skip
+TO_TURN = "To turn this, show the notebook’s first figure, or restart and run all cells."
+
+
+def written(server, name, cells):
+    """Write a notebook of these cells."""
+    python = {"kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}}
+    code = [nbformat.v4.new_code_cell(source.strip()) for source in cells]
+    nbformat.write(nbformat.v4.new_notebook(cells=code, metadata=python), server.folder / f"{name}.ipynb")
+
+
+def four_figures(page, server, name="four"):
+    """A notebook with four figures, all its cells run; the first two carry what draws them."""
+    written(server, name, FIGURES)
+    notebook = Opened(page, server, name)
+    notebook.run_all()
+    assert shown_in(notebook) == [1, 2, 3, 4]
+    return notebook
+
+
+def reopened(page, server, notebook, forget=True):
+    """Save a notebook, and open it as on another day, without its kernel, and by default on another machine."""
+    notebook.command("docmanager:save")
+    page.goto(f"{server.url}/api")  # a page in which nothing carries anything
+    if forget:
+        page.evaluate("() => localStorage.clear()")
+    return Opened(page, server, notebook.name, fresh=False)
+
+
+def shown_in(notebook):
+    """Where the frame b is in each figure: its number."""
+    return [round(frame_in(notebook.scene(i), "b")[0, 3]) for i in notebook.figures()]
+
+
+def waiting(notebook, cell):
+    """The frame of a figure that has nothing to draw it yet: it says what to do, and the picture is seen."""
+    place = notebook.place(cell)
+    frame = place.element_handle().content_frame()
+    frame.get_by_text(TO_TURN).wait_for()
+    assert frame.evaluate("() => getComputedStyle(document.body).backgroundColor") == "rgba(0, 0, 0, 0)"
+    assert place.evaluate("frame => frame.parentElement.querySelector('img').naturalWidth") > 700
+    return frame
+
+
+def first_moved_to_the_end(notebook):
+    notebook.activate(1)
+    notebook.command("notebook:cut-cell")
+    notebook.activate(3)
+    notebook.command("notebook:paste-cell-below")
+
+
+def first_deleted(notebook):
+    notebook.activate(1)
+    notebook.command("notebook:delete-cell")
+
+
+def first_cleared(notebook):
+    notebook.activate(1)
+    notebook.command("notebook:clear-cell-output")
+
+
+def last_copied_to_the_top(notebook):
+    notebook.activate(4)
+    notebook.command("notebook:copy-cell")
+    notebook.activate(0)
+    notebook.command("notebook:paste-cell-above")
+
+
+@pytest.mark.parametrize(
+    "change, expected",
+    [
+        (lambda notebook: None, [1, 2, 3, 4]),
+        (first_moved_to_the_end, [2, 3, 4, 1]),
+        (first_deleted, [2, 3, 4]),
+        (first_cleared, [2, 3, 4]),
+        (last_copied_to_the_top, [4, 1, 2, 3, 4]),
+    ],
+)
+def test_figures_live_on_in_a_saved_notebook(page, server, change, expected):
+    notebook = four_figures(page, server)
+    change(notebook)
+    assert shown_in(notebook) == expected
+    assert shown_in(reopened(page, server, notebook)) == expected
+
+
+def test_figures_without_what_draws_them_are_pictures_until_it_comes(page, server):
+    notebook = four_figures(page, server)
+    for _ in range(2):
+        first_deleted(notebook)
+    notebook = reopened(page, server, notebook)
+    frame = waiting(notebook, 1)
+    page.screenshot(path=SCREENSHOTS / "waiting.png")
+    notebook.wait_until_idle()
+    for cell in (0, 2):  # a new kernel's first figure carries
+        notebook.activate(cell)
+        notebook.command("notebook:run-cell")
+    notebook.wait_until_idle()
+    frame.wait_for_function("() => document.body.style.background === 'white'")
+    assert shown_in(notebook) == [3, 4] and frame.get_by_text(TO_TURN).count() == 0
+
+
+@pytest.mark.parametrize("others", [FIGURES, ("1 + 1",)], ids=["with figures", "without"])
+def test_a_figure_copied_into_another_notebook(page, server, others):
+    notebook = four_figures(page, server)
+    notebook.activate(4)
+    notebook.command("notebook:copy-cell")
+    written(server, "mine", others)
+    page.evaluate("() => { window.jupyterapp.commands.execute('docmanager:open', {path: 'mine.ipynb'}) }")
+    page.wait_for_function("() => jupyterapp.shell.currentWidget?.context?.path === 'mine.ipynb'")
+    page.wait_for_function("() => jupyterapp.shell.currentWidget.context.isReady")
+    mine = Opened.__new__(Opened)
+    mine.page, mine.name = page, "mine"
+    mine.run_all()
+    mine.activate(len(others) - 1)
+    mine.command("notebook:paste-cell-below")
+    own = [1, 2, 3, 4] if others == FIGURES else []
+    assert shown_in(mine) == [*own, 4]
+    mine = reopened(page, server, mine, forget=False)
+    assert shown_in(mine) == [*own, 4]  # this browser remembers what the first notebook's figures carried
+    mine = reopened(page, server, mine)
+    if own:
+        assert shown_in(mine) == [*own, 4]
+    else:
+        waiting(mine, len(others))
+
+
+def test_nothing_is_run_that_others_have_left_in_the_browser(page, server):
+    notebook = four_figures(page, server)
+    for _ in range(2):
+        first_deleted(notebook)
+    notebook = reopened(page, server, notebook, forget=False)
+    assert shown_in(notebook) == [3, 4]
+    notebook.command("docmanager:save")
+    page.goto(f"{server.url}/api")
+    evil = base64.b64encode(
+        gzip.compress(b"parent.evil = document.body.innerHTML = 'evil'; showScene = () => {}")
+    ).decode()
+    page.evaluate("evil => Object.keys(localStorage).forEach(key => localStorage[key] = evil)", evil)
+    notebook = Opened(page, server, "four", fresh=False)
+    waiting(notebook, 1)
+    assert page.evaluate("() => window.evil") is None
 
 
 def test_an_untrusted_copy_shows_the_pictures(page, server):

@@ -135,7 +135,7 @@ def test_a_wrong_exercise_is_shown_with_the_numbers_of_a_public_case(classroom):
         assert f"{label} x {x:g} y {y:g} z {z:g}" in text
     pictures = [tag for tag in Parsed(page(classroom, "ben", TWO)).tags if tag[0] == "img"]
     assert any("p (expected)" in picture["alt"] for _, picture in pictures)
-    assert all(picture["src"].startswith("data:image/png;base64,") for _, picture in pictures)
+    assert all(picture["src"].startswith("data:image/webp;base64,") for _, picture in pictures)
 
 
 def test_no_hidden_number_is_told(classroom):

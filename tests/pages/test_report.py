@@ -120,7 +120,7 @@ def test_an_example_is_drawn_with_a_text_for_who_does_not_see_it(graded):
     pictures = read(graded).of("img")
     assert pictures and len(pictures) <= 10
     for picture in pictures:
-        assert picture["src"].startswith("data:image/png;base64,")
+        assert picture["src"].startswith("data:image/webp;base64,")
         assert "(yours)" in picture["alt"] or "your x" in picture["alt"]
 
 

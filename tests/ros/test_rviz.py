@@ -59,8 +59,7 @@ def markers_alone(viewer):
 def still(viewer):
     """Our picture, as RViz's are."""
     nodes = markers_alone(viewer).nodes
-    png = picture.render(nodes, np.zeros((1, 2, 3)), Camera(BOX, page.ASPECT))
-    return np.array(Image.open(io.BytesIO(png)).convert("RGB"))
+    return np.array(picture.render(nodes, np.zeros((1, 2, 3)), Camera(BOX, page.ASPECT)))
 
 
 def seen(image):

@@ -39,16 +39,17 @@ def _picture(plot):
 def _show(axes):
     import matplotlib.pyplot as plt
     from IPython.display import display
+    from PIL import Image
 
     from .viewing.page import still
 
     names = dict.fromkeys([text.get_text() for text in axes.texts] + [line.get_label() for line in axes.lines])
     words = f"{axes.get_title()}. Across: {axes.get_xlabel()}. Up: {axes.get_ylabel() or 'from -1 to 1'}."
     words += f" Shown: {', '.join(name for name in names if name and not name.startswith('_'))}."
-    png = io.BytesIO()
-    axes.figure.savefig(png, dpi=100)
+    file = io.BytesIO()
+    axes.figure.savefig(file, dpi=100)
     plt.close(axes.figure)  # or Jupyter would show it once more
-    display({"text/plain": words, "text/html": still(png.getvalue(), words, "")}, raw=True)
+    display({"text/plain": words, "text/html": still(Image.open(file).convert("RGB"), words, "")}, raw=True)
 
 
 @_picture

@@ -71,8 +71,6 @@ class _Node:
         if ipython := shell():
             ipython.events.register("post_run_cell", lambda *_: self.show())
         else:
-            import meshcat  # noqa: F401  (what it brings along cannot be imported any more while Python ends)
-
             atexit.register(self.write)
         self.watching = True
 

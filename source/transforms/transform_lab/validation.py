@@ -16,6 +16,20 @@ def numbers(value, what, lengths=None):
     With `lengths`, the result is a vector of one of these lengths. Raises TypeError if `value` is not made of numbers
     (a message, say), ValueError for another length, unequal rows, NaN or infinity.
     """
+    plain = type(value) is np.ndarray and value.dtype == np.float64  # as most are: it is made of numbers
+    array = np.array(value) if plain else _numeric(value, what)
+    if lengths is not None:
+        if array.size not in lengths or array.size != max(array.shape, default=0):
+            expected = " or ".join(str(n) for n in lengths)
+            raise ValueError(f"{what} must be {expected} numbers; got {shape_text(array)}")
+        array = array.reshape(-1)
+    if not np.isfinite(array).all():
+        raise ValueError(f"{what} contains NaN or infinity: {array.tolist()}")
+    return array
+
+
+def _numeric(value, what):
+    """Return `value`, which is no array of floats, as one."""
     if libraries.is_matrix(value):
         raise TypeError(f"{what} must be a plain array of numbers, not a {libraries.described(value)}")
     for fields, spelling in [("xyzw", "q"), ("xyz", "p")]:
@@ -32,7 +46,7 @@ def numbers(value, what, lengths=None):
             raise TypeError  # NumPy would drop imaginary parts, show what is masked, and read numbers in texts
         if kind == "O" and any(item is None or isinstance(item, (str, bytes)) for item in np.asarray(value).flat):
             raise TypeError
-        array = np.array(value, dtype=np.float64)
+        return np.array(value, dtype=np.float64)
     except TypeError:
         got = repr(value) if isinstance(value, (str, list, tuple)) and len(repr(value)) < 80 else type(value).__name__
         raise TypeError(f"{what} must be made of numbers; got {got}") from None
@@ -40,14 +54,6 @@ def numbers(value, what, lengths=None):
         raise ValueError(f"{what} has a number that is too large") from None
     except ValueError:
         raise ValueError(f"{what} must be made of numbers, in rows of equal length; got {value!r}") from None
-    if lengths is not None:
-        if array.size not in lengths or array.size != max(array.shape, default=0):
-            expected = " or ".join(str(n) for n in lengths)
-            raise ValueError(f"{what} must be {expected} numbers; got {shape_text(array)}")
-        array = array.reshape(-1)
-    if not np.isfinite(array).all():
-        raise ValueError(f"{what} contains NaN or infinity: {array.tolist()}")
-    return array
 
 
 def shape_text(array):

@@ -1,8 +1,12 @@
 """The commands that meshcat's viewer takes: what it holds of a scene, and what changes that, packed for the way to it."""
 
 import functools
+import importlib.util
 import math
 import struct
+import sys
+import types
+from pathlib import Path
 
 import numpy as np
 
@@ -11,6 +15,20 @@ from .camera import FIELD_OF_VIEW
 ALONG_Y = np.array([[1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1.0]])  # meshcat's cylinders lie along y
 UPRIGHT = {"cylinder": ALONG_Y, "cone": ALONG_Y}
 GRID_COLOR = 0xD8DCE2
+
+
+def folder():
+    """Return meshcat's folder."""
+    return Path(importlib.util.find_spec("meshcat").submodule_search_locations[0])
+
+
+@functools.cache
+def _geometry():
+    """Return meshcat's geometry, loaded alone: the package would load its web server, which takes half a second."""
+    package = types.ModuleType(f"{__package__}.meshcat")
+    package.__path__ = [str(folder())]
+    sys.modules[package.__name__] = package
+    return importlib.import_module(f"{package.__name__}.geometry")
 
 
 def properties(nodes):
@@ -55,8 +73,7 @@ def set_transform(path, matrix):
 @functools.lru_cache(500)
 def set_object(path, look):
     """Return the command that puts an object of a certain look at `path`."""
-    from meshcat import geometry as g
-
+    g = _geometry()
     (kind, *rest), opacity = look, 1.0
     if kind == "points":
         points, colors = (np.frombuffer(data).reshape(-1, n).T.astype(np.float32) for data, n in zip(rest, (3, 4)))

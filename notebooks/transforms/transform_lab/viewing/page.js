@@ -1,5 +1,7 @@
-// Shows a scene in meshcat's viewer: its labels, fixed frame and camera, its animation or its controls. page.py puts it
-// into each page behind meshcat's own script.
+// Shows a scene in meshcat's viewer: its labels, fixed frame and camera, its animation or its controls. page.py packs it
+// behind meshcat's own script.
+
+window.CCapture = class {};  // meshcat's viewer makes one, for films
 
 function showScene(buffer) {
   const [[told], base, ...states] = blocks(buffer), view = JSON.parse(new TextDecoder().decode(told));

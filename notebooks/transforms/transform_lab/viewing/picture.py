@@ -1,75 +1,115 @@
 """Draws a scene as a still picture, for where scripts or WebGL are missing: notebooks not trusted, saved pages."""
 
+import functools
+import importlib.util
 import io
 import math
+from pathlib import Path
 
 import numpy as np
 
 from .shapes import BESIDE, moved
 
-HEIGHT = 4.5  # inches
-DOTS_PER_INCH = 110
+HEIGHT = 495  # pixels
+FINE = 2  # times as many pixels in each direction are painted first, so that edges are smooth
+NAME, WORDS = 15, 14  # height of letters: of names, and of the text in the corner
 CAPITAL = 0.72  # of its font's size: the height of a capital letter
+MIDDLE = 0.26  # of its font's size: how far the middle of a line is above the line that letters stand on
 LOWER = 0.23  # of a capital letter's height
+LARGEST = 600  # of a font; above it the picture would be all letter
+COLORS = [max(255 - (255 - value + 12) // 24 * 24, 0) for value in range(256)] * 3  # from white down
 LIGHT = np.array([0.3, 0.2, 0.95])  # in the camera's right, up and backward directions
 
 
 def render(nodes, grid, camera, text=""):
-    """Return the PNG (bytes) of `nodes` and the lines of the `grid` (Nx2x3), seen by `camera`, all in the fixed frame.
+    """Return the image (Pillow's) of `nodes` and the lines of the `grid` (Nx2x3), seen by `camera`, all in the fixed frame.
 
     `text` stands in the upper left.
     """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.collections import LineCollection, PolyCollection
-    from matplotlib.figure import Figure
+    from PIL import Image, ImageDraw
 
-    figure = Figure(figsize=(HEIGHT * camera.aspect, HEIGHT), dpi=DOTS_PER_INCH, facecolor="white")
-    canvas = FigureCanvasAgg(figure)
-    axes = figure.add_axes([0, 0, 1, 1], xlim=(0, camera.aspect), ylim=(0, 1))
-    axes.set_axis_off()
-
+    image = Image.new("RGB", (round(FINE * HEIGHT * camera.aspect), FINE * HEIGHT), "white")
+    pen = ImageDraw.Draw(image, "RGBA")
     lines = camera.project(grid)[0]
-    axes.add_collection(
-        LineCollection(lines[np.isfinite(lines).all(axis=(1, 2))], colors="#d8dce2", linewidths=0.7, zorder=0)
-    )
-    polygons, colors, depths = [], [], []
+    for line in _pixels(lines[np.isfinite(lines).all(axis=(1, 2))]):
+        pen.line(line, fill="#d8dce2", width=FINE)
+    sheets = []  # of faces, with the distance at which they are painted
     for node in nodes:
-        parts = [_solid(node, solid, camera) for solid in node.solids]
-        parts += [_cloud(node, cloud, camera) for cloud in node.clouds]
+        for solid in node.solids:
+            faces = _shown(*_solid(node, solid, camera))
+            sheets += [(faces[0][0], faces)] if faces and solid.color[3] < 1 else [(face[0], [face]) for face in faces]
+        parts = [_cloud(node, cloud, camera) for cloud in node.clouds]
         parts += [_mesh(node, mesh, camera) for mesh in node.meshes]
-        for places, shades, distances in parts:
-            shown = np.isfinite(places).all(axis=(1, 2))  # in front of the camera
-            polygons.extend(places[shown])
-            colors.extend(shades[shown])
-            depths.extend(distances[shown])
-    order = np.argsort(depths)[::-1]  # what is nearer is painted later
-    polygons, colors = np.reshape(polygons, (-1, 4, 2))[order], np.reshape(colors, (-1, 4))[order]
-    edges = colors * [1, 1, 1, 0] + np.outer(colors[:, 3] == 1, [0, 0, 0, 1])  # close the seams, but of solid colours
-    axes.add_collection(PolyCollection(polygons, facecolors=colors, edgecolors=edges, linewidths=0.3, zorder=1))
-    _write(axes, nodes, camera)
+        sheets += [(face[0], [face]) for part in parts for face in _shown(*part)]
+    for _, faces in sorted(sheets, key=lambda sheet: -sheet[0]):  # what is nearer is painted later
+        if len(faces) == 1:
+            pen.polygon(faces[0][1], fill=faces[0][2])
+        else:
+            _paint(image, faces)
+    image = image.reduce(FINE)
+    pen = ImageDraw.Draw(image, "RGBA")
+    _write(pen, nodes, camera)
     if text:
-        axes.text(0.02, 0.98, text, parse_math=False, family="monospace", fontsize=9, va="top", color="#222222", zorder=4,
-                  bbox={"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 2})  # fmt: skip
+        font = _font("DejaVuSansMono.ttf", WORDS)
+        box = pen.multiline_textbbox((10, 10), text, font, spacing=2)
+        pen.rectangle((box[0] - 3, box[1] - 3, box[2] + 3, box[3] + 3), fill=(255, 255, 255, 204))
+        pen.multiline_text((10, 10), text, "#222222", font, spacing=2)
+    return image
 
-    canvas.draw()
-    return _png(np.asarray(canvas.buffer_rgba()))
+
+def _shown(places, colors, distances):
+    """Return the faces that are in front of the camera, the nearest first: distance, pixels, colour of each."""
+    shown = np.flatnonzero(np.isfinite(places).all(axis=(1, 2)))
+    shown = shown[np.argsort(distances[shown])]
+    shades = np.round(255 * colors[shown]).astype(int).tolist()
+    return list(zip(distances[shown].tolist(), _pixels(places[shown]), map(tuple, shades)))
 
 
-def _png(pixels):
-    """Return a PNG file with a palette of 256 colours: half the size, no colour off by more than 14 of 255."""
-    from PIL import Image
+def _paint(image, faces):
+    """Paint what is seen of a translucent solid in one piece, for where two faces meet none must be painted twice."""
+    from PIL import Image, ImageDraw
+
+    corners = np.array([pixels for _, pixels, _ in faces]).reshape(-1, 2)
+    left, top = np.maximum(np.floor(corners.min(axis=0)).astype(int), 0).tolist()
+    right, bottom = np.minimum(np.ceil(corners.max(axis=0)).astype(int) + 1, image.size).tolist()
+    if left >= right or top >= bottom:
+        return
+    sheet = image.crop((left, top, right, bottom))
+    cover = Image.new("L", sheet.size)
+    colors, opacities = ImageDraw.Draw(sheet), ImageDraw.Draw(cover)
+    for _, pixels, shade in faces:
+        place = [number - (left, top)[i % 2] for i, number in enumerate(pixels)]
+        colors.polygon(place, fill=shade[:3])
+        opacities.polygon(place, fill=shade[3])
+    image.paste(sheet, (left, top), cover)
+
+
+def _pixels(places):
+    """Return places in the picture (Nx…x2) as lists of pixels, x, y, x, y, …, from the upper left of the fine picture."""
+    pixels = (np.array([0, 1]) + places * [1, -1]) * (FINE * HEIGHT)
+    return np.clip(pixels, -1e8, 1e8).reshape(len(places), math.prod(places.shape[1:])).tolist()
+
+
+@functools.cache
+def _font(name, size):
+    """Return a font of Matplotlib's, which need not be imported for it."""
+    from PIL import ImageFont
+
+    matplotlib = importlib.util.find_spec("matplotlib").submodule_search_locations[0]
+    return ImageFont.truetype(Path(matplotlib, "mpl-data", "fonts", "ttf", name), size)
+
+
+def webp(image):
+    """Return an image as a WebP file (bytes) for a page: without loss, but with colours off by up to 12 of 255 for its size."""
+    from PIL import WebPImagePlugin  # noqa: F401, or Pillow would load all its formats to find this one
 
     file = io.BytesIO()
-    Image.fromarray(pixels).convert("RGB").quantize(256, method=Image.Quantize.MAXCOVERAGE).save(
-        file, "PNG", optimize=True
-    )
+    image.point(COLORS).save(file, "WEBP", lossless=True, quality=30, method=3)
     return file.getvalue()
 
 
-def _write(axes, nodes, camera):
+def _write(pen, nodes, camera):
     """Write the labels: those that have a fixed place, then the others where they cover least."""
-    from matplotlib.patheffects import withStroke
-
     line = 0.038  # height of a line, of the picture's height
     labels = [(label, node.transform) for node in nodes for label in node.labels if _in_view(label, node, camera)]
     taken = []  # centre, half width and half height of what is drawn, and how bad it is to cover that
@@ -93,15 +133,17 @@ def _write(axes, nodes, camera):
 
         x, y = min(candidates, key=badness_at)
         taken.append((x, y, half_width, half_height, 20 if label.beside else 5))
-        weight = "bold" if label.height is None else "normal"
-        style = {"fontweight": weight, "ha": "center", "va": "center", "ma": "left", "parse_math": False}
-        outline = [withStroke(linewidth=3, foreground="white")]
         size = _font_size(label, transform, camera)
-        if (
-            label.height is not None
-        ):  # RViz has a text lower than its position, and the middle of our font's line is high
-            y -= LOWER * CAPITAL * size / (72 * HEIGHT)
-        axes.text(x, y, label.text, color=label.color, fontsize=size, path_effects=outline, **style)
+        if label.height is not None:  # RViz has a text lower than its position
+            y -= LOWER * CAPITAL * size / HEIGHT
+        font = _font("DejaVuSans-Bold.ttf" if label.height is None else "DejaVuSans.ttf", size)
+        color = tuple(round(255 * value) for value in label.color)
+        lines = label.text.split("\n")
+        left = x * HEIGHT - max(map(font.getlength, lines)) / 2
+        for i, words in enumerate(lines):
+            below = (i - (len(lines) - 1) / 2) * 1.15 + MIDDLE
+            place = left, (1 - y) * HEIGHT + below * size
+            pen.text(place, words, color, font, anchor="ls", stroke_width=2, stroke_fill="white")
 
 
 def _in_view(label, node, camera):
@@ -111,12 +153,11 @@ def _in_view(label, node, camera):
 
 
 def _font_size(label, transform, camera):
-    """Return the size in points of a label's text."""
+    """Return the size in pixels of a label's text."""
     if label.height is None:
-        return 10
+        return NAME
     depth = camera.project(moved(transform, label.position))[1]
-    # above 400 points the picture would be all letter
-    return min(72 * HEIGHT * label.height / (2 * camera.tangent * depth) / CAPITAL, 400)
+    return min(max(round(HEIGHT * label.height / (2 * camera.tangent * depth) / CAPITAL), 1), LARGEST)
 
 
 def _solid(node, solid, camera):

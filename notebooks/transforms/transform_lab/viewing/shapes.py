@@ -4,6 +4,8 @@ A node is a place in the scene: its transform is given in the scene's root frame
 Both the interactive page and the still picture are drawn from the same nodes.
 """
 
+import functools
+import math
 from dataclasses import dataclass, field
 from urllib.parse import quote
 
@@ -103,14 +105,20 @@ def placed(kind, position, size, color):
 def rod(start, end, diameter, color, kind="cylinder"):
     """Return a Solid from `start` to `end` (a cone has its tip at `end`), or none if the two coincide."""
     start, end = np.asarray(start, float), np.asarray(end, float)
-    length = np.linalg.norm(end - start)
+    length = math.dist(start, end)
     if length == 0:
         return []
-    z = (end - start) / length
-    x = np.cross(np.eye(3)[np.abs(z).argmin()], z)  # any direction at right angles to z
-    x /= np.linalg.norm(x)
-    matrix = np.eye(4)
-    matrix[:3, :3] = np.column_stack([x, np.cross(z, x), z]) * [diameter, diameter, length]
+    x, y, z = ((end - start) / length).tolist()
+    # Any direction at right angles to the rod: the product of the axis that is farthest from it, and the rod.
+    across = [(0, -z, y), (z, 0, -x), (-y, x, 0)][min(range(3), key=lambda i: abs((x, y, z)[i]))]
+    width = diameter / math.hypot(*across)
+    u, v, w = (width * number for number in across)
+    matrix = np.array([
+        [u, y * w - z * v, length * x, 0],
+        [v, z * u - x * w, length * y, 0],
+        [w, x * v - y * u, length * z, 0],
+        [0, 0, 0, 1],
+    ])  # fmt: skip
     matrix[:3, 3] = (start + end) / 2
     return [Solid(kind, matrix, color)]
 
@@ -130,15 +138,22 @@ def frame_node(name, transform, length, ghost=False):
 
     A ghost is translucent and thicker, so that a solid frame at the same place is seen inside it.
     """
-    node = Node(path("frames", name), transform)
+    solids, letters = _axes(length, ghost)
+    labels = [*letters, Label(name, np.zeros(3), beside=True)]
+    return Node(path("frames", name), transform, list(solids), labels=labels)
+
+
+@functools.lru_cache(50)
+def _axes(length, ghost):
+    """Return the solids and the letters of a frame's axes, which are the same in every frame of a scene."""
+    solids, letters = [], []
     thick = length * (2.2 if ghost else 1)
     for letter, axis, color in zip("XYZ", np.eye(3), (X_RED, Y_GREEN, Z_BLUE)):
         shown = translucent(color) if ghost else color
-        node.solids += arrow((0, 0, 0), length * axis, shown, 0.05 * thick, 0.13 * thick, 0.24 * length)
-        node.labels.append(Label(letter, (1.25 if ghost else 1.12) * length * axis, color))
-    node.solids.append(placed("sphere", (0, 0, 0), 0.08 * thick, translucent(DARK) if ghost else DARK))
-    node.labels.append(Label(name, np.zeros(3), beside=True))
-    return node
+        solids += arrow((0, 0, 0), length * axis, shown, 0.05 * thick, 0.13 * thick, 0.24 * length)
+        letters.append(Label(letter, (1.25 if ghost else 1.12) * length * axis, color))
+    solids.append(placed("sphere", (0, 0, 0), 0.08 * thick, translucent(DARK) if ghost else DARK))
+    return solids, letters
 
 
 def gripper_node(gripper, transform):

@@ -23,12 +23,14 @@ over 2000 points      are drawn                                    ValueError (P
 """
 
 import inspect
+import io
 import numbers
 
 import numpy as np
 
 from ..jupyter import being_graded
 from .camera import VIEWS, Camera
+from .carriers import carries
 from .motion import Motion, control
 from .scene import Scene
 
@@ -121,8 +123,7 @@ class Viewer(Scene):
 
     def _move(self, motion):
         """Keep `motion`; an error that its function raises at the start is the caller's."""
-        if not callable(motion.function):
-            raise TypeError(f"the first argument must be a function; got {type(motion.function).__name__}")
+        motion.check()
         motion.scene(self, motion.arguments, strict=True)
         self._motion, self._link = motion, None
         return self
@@ -158,16 +159,17 @@ class Viewer(Scene):
         """Return the scene as a page of its own (text): write it to a file and open that in a browser."""
         return (
             '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>Frames</title></head>'
-            f'<body style="font-family: sans-serif">{self._figure(None)}</body></html>\n'
+            f'<body style="font-family: sans-serif">{self._figure(self.state(), None, carries=True)}</body></html>\n'
         )
 
     def _repr_mimebundle_(self, include=None, exclude=None):
         return self._bundle(live=False)
 
     def _bundle(self, live):
-        bundle = {"text/plain": self.description()}
+        scene = self.state()
+        bundle = {"text/plain": Scene.description(scene)}
         if not being_graded():  # nobody looks while a notebook is graded
-            bundle["text/html"] = self.figure(live)
+            bundle["text/html"] = self._figure(scene, self._linked(live), carries())
         return bundle
 
     def __repr__(self):
@@ -178,33 +180,40 @@ class Viewer(Scene):
 
         With controls, or if `live`, the page asks the kernel for what to show, if it runs in a notebook with a kernel.
         """
+        return self._figure(self.state(), self._linked(live), carries())
+
+    def _linked(self, live):
+        """Return the Link of a figure that asks the kernel; None where there is nothing to ask, or no kernel."""
         if not live and not (self._motion and self._motion.controls):
-            return self._figure(None)
+            return None
         from .live import Link, has_kernel
 
         if has_kernel() and self._link is None:
             self._link = Link(self, self._motion)
-        return self._figure(self._link)
+        return self._link
 
-    def _figure(self, link):
+    def _figure(self, scene, link, carries):
         from . import page
 
-        scene, drawing, states, length = self._drawings()
+        drawing, states, length = self._drawings(scene)
         if link:
             link.length = length
             if not states:
                 drawing.leave_room(length)
-        body = page.render(drawing, scene.fixed_frame, self._seen_from, self._motion, states, link and link.name)
+        body = page.render(
+            drawing, scene.fixed_frame, self._seen_from, self._motion, states, link and link.name, carries
+        )
         still = self._picture(scene, drawing, page.text_height([drawing, *states]))
         caption = self._caption(scene, [drawing, *states], length)
         rows = 1 + (len(self._motion.controls) + bool(self._motion.seconds) if self._motion else 0)
-        return page.over_picture(body, still, Scene.description(scene), caption, rows)
+        return page.over_picture(body, still, Scene.description(scene), caption, rows, carries)
 
     def still(self):
         """Return the scene as a still picture in HTML, with its text for screen readers: for pages without scripts."""
         from . import page
 
-        scene, drawing, states, length = self._drawings()
+        scene = self.state()
+        drawing, states, length = self._drawings(scene)
         picture = self._picture(scene, drawing, page.text_height([drawing, *states]))
         return page.still(picture, Scene.description(scene), self._seen_in(scene, [drawing], length))
 
@@ -212,16 +221,18 @@ class Viewer(Scene):
         """Return the scene as a still picture: the bytes of a PNG file."""
         from . import page
 
-        scene, drawing, states, _ = self._drawings()
-        return self._picture(scene, drawing, page.text_height([drawing, *states]))
+        scene, file = self.state(), io.BytesIO()
+        drawing, states, _ = self._drawings(scene)
+        self._picture(scene, drawing, page.text_height([drawing, *states])).save(file, "PNG", optimize=True)
+        return file.getvalue()
 
-    def _drawings(self):
-        """Return the Scene that is shown, its Drawing, those of the states computed beforehand, the length of axes."""
+    def _drawings(self, scene):
+        """Return the Drawing of the `scene` that is shown, those of the states computed beforehand, the length of axes."""
         from .drawing import draw_all
 
-        scene = self.state()
-        (drawing, *states), length = draw_all([scene, *(self._motion.scenes(self) if self._motion else ())], self.at)
-        return scene, drawing, states, length
+        scenes = self._motion.scenes(self, scene) if self._motion else []
+        drawings, length = draw_all(scenes or [scene], self.at)
+        return (drawings[self._motion.start], drawings, length) if scenes else (*drawings, [], length)
 
     def _picture(self, scene, drawing, top):
         from . import page, picture

@@ -66,6 +66,17 @@ class Motion:
             state = state * len(control.sampled) + control.sampled.index(control.index)
         return state
 
+    def check(self):
+        """Raise TypeError for what is no function, or one of other arguments."""
+        if not callable(self.function):
+            raise TypeError(f"the first argument must be a function; got {type(self.function).__name__}")
+        moments = () if self.seconds is None else ("moment",)
+        names = [control.name for control in self.controls]
+        try:
+            inspect.signature(self.function).bind("scene", *moments, **dict.fromkeys(names))
+        except TypeError as error:
+            raise TypeError(f"the function must take ({', '.join(['scene', *moments, *names])}): {error}") from None
+
     def scene(self, base, arguments, strict=False):
         """Return a copy of the scene `base` with what the function adds to it; what it returns is the text.
 
@@ -73,11 +84,6 @@ class Motion:
         """
         scene, before = base.copy(), vars(base.copy())
         args, kwargs = ((), arguments) if isinstance(arguments, dict) else ((arguments,), {})
-        try:
-            inspect.signature(self.function).bind(scene, *args, **kwargs)
-        except TypeError as error:
-            needed = ", ".join(["scene", *(kwargs or ["moment"])])
-            raise TypeError(f"the function must take ({needed}): {error}") from None
         try:
             if (result := self.function(scene, *args, **kwargs)) is not None:
                 scene.text = as_text(result)
@@ -89,10 +95,11 @@ class Motion:
             scene.text = f"{type(error).__name__}: {error}"
         return scene
 
-    def scenes(self, base):
-        """Return the scenes of all `settings`. What the function prints is shown once, not once for each."""
+    def scenes(self, base, now):
+        """Return the scenes of all `settings`, of which `now` is the present one. What the function prints is shown once."""
+        settings = self.settings()
         with contextlib.redirect_stdout(io.StringIO()):
-            return [self.scene(base, arguments) for arguments in self.settings()]
+            return [now if i == self.start else self.scene(base, of) for i, of in enumerate(settings)]
 
 
 def as_text(result):

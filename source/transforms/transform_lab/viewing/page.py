@@ -1,8 +1,7 @@
 """Draws a scene as a page: meshcat's viewer, without its server, over a still picture.
 
-The page needs no network and no port. The viewer's script, which meshcat brings along, is compressed into it. Where
-scripts or WebGL are missing the frame stays clear, and where `<iframe>` is not allowed it is taken out: in both cases
-the picture remains.
+The page needs no network and no port. What draws it is not in each page (see carriers.py); until it is there the frame stays
+clear, and so where scripts or WebGL are missing, and where `<iframe>` is not allowed it is taken out: the picture is seen.
 """
 
 import base64
@@ -12,14 +11,15 @@ import hashlib
 import html
 import json
 import math
-from importlib import resources
+import re
 from pathlib import Path
 
 import numpy as np
 
 from .camera import FIELD_OF_VIEW, NEAREST, VIEWS, Camera
 from .drawing import grid
-from .meshcat_commands import block, changes, delete, properties, set_object, set_property, set_transform
+from .meshcat_commands import block, changes, delete, folder, properties, set_object, set_property, set_transform
+from .picture import webp
 from .shapes import BESIDE
 from .shapes import path as node_path
 
@@ -27,13 +27,29 @@ ASPECT = 1.6  # width by height of what is drawn
 MOST_CHOICES = 40  # of fixed frames to choose from
 ROW = 30  # height of a row of controls, in pixels
 HERE = Path(__file__).parent
+# of meshcat's viewer: what makes films (ccapture.js), and what reads files of meshes (OBJ, MTL, Collada, STL)
+UNUSED = {"583", "549", "468", "617", "973", "23", "976", "476"}
 
 
 @functools.cache
-def viewer_script():
-    """Return meshcat's JavaScript viewer and the code of these pages, compressed, as base64 text."""
-    meshcat = resources.files("meshcat").joinpath("viewer", "dist", "main.min.js").read_bytes()
-    return _packed(meshcat + b"\n" + (HERE / "page.js").read_bytes())
+def script():
+    """Return the text that draws scenes (the page's elements, meshcat's viewer, page.js), packed, and its digest."""
+    elements, code = _read("scene.html").replace("ROW", str(ROW), 1), _read("page.js")
+    text = f"document.body.innerHTML = {json.dumps(elements)};\n{_viewer()}\n{code}".encode()
+    return _packed(text), base64.b64encode(hashlib.sha256(text).digest()).decode("ascii")
+
+
+def _viewer():
+    """Return meshcat's viewer, a bundle of numbered modules, without those that these pages never use."""
+    bundle = (folder() / "viewer/dist/main.min.js").read_text(encoding="utf-8")
+    modules = re.split(r"(?<=[{,])(?=\d+:(?:function\(|\([\w,]*\)=>|\w=>))", bundle)
+    numbered = ((module.partition(":")[0], module) for module in modules)
+    return "".join(f"{number}:()=>{{}}," if number in UNUSED else module for number, module in numbered)
+
+
+def _read(name):
+    """Return the text of a file without its comments and indentation, which need not be packed."""
+    return re.sub(r"\n\s+", "\n", re.sub(r" *// .*", "", (HERE / name).read_text(encoding="utf-8")))
 
 
 def _packed(data):
@@ -59,11 +75,11 @@ def labels(nodes):
     return sorted(found, key=lambda label: label["beside"])
 
 
-def render(drawing, fixed_frame, seen_from, motion=None, states=(), live=None):
+def render(drawing, fixed_frame, seen_from, motion=None, states=(), live=None, carries=True):
     """Return the interactive page (text) of a Drawing. It shows no still picture.
 
     `seen_from` is one of camera.VIEWS; `states` are Drawings of the same scene that `motion`, a Motion, goes through;
-    `live` is the name under which the kernel sends changes.
+    `live` is the name under which the kernel sends changes; what `carries` holds the script that draws it.
     """
     drawings, found = [drawing, *states], labels(drawing.nodes)
     commands, frames, top = [], [], text_height(drawings)
@@ -99,10 +115,10 @@ def render(drawing, fixed_frame, seen_from, motion=None, states=(), live=None):
         "text": drawing.text,
     }
     scene = _packed(block([json.dumps(view).encode()]) + b"".join(blocks))
-    script = viewer_script()
-    version = hashlib.sha256(script.encode()).hexdigest()[:12]
-    page = (HERE / "page.html").read_text(encoding="utf-8").replace("ROW", str(ROW), 1)
-    return page.replace("PAGE", json.dumps({"version": version, "script": script, "scene": scene}), 1)
+    packed, digest = script()
+    carried = _read("carried.js").replace("PACKED", packed, 1) if carries else ""
+    parts = {"DIGEST": digest, "CARRIED": carried, "SCENE": scene}
+    return re.sub("|".join(parts), lambda found: parts[found[0]], _read("page.html"))
 
 
 def _add_states(blocks, base, base_labels, drawings):
@@ -142,30 +158,32 @@ def text_height(drawings):
     return min(0.02 + 0.035 * lines, 0.4) if lines else 0.0
 
 
-def over_picture(page, picture, description, caption, rows):
-    """Return HTML that shows `page` in a frame over `picture` (PNG bytes), whose alternative text is `description`.
+def over_picture(page, picture, description, caption, rows, carries=True):
+    """Return HTML that shows `page` in a frame over `picture` (an image), whose alternative text is `description`.
 
-    `rows` of controls stand below the picture.
+    `rows` of controls stand below the picture. What `carries` the script is loaded although nobody looks at it yet.
     """
-    source = base64.b64encode(picture).decode("ascii")
     return (
         '<figure style="margin: 0; max-width: 760px">'
         f'<div style="position: relative; aspect-ratio: {ASPECT:g}; background: white; margin-bottom: {rows * ROW}px">'
-        f'<img src="data:image/png;base64,{source}" alt="{html.escape(description)}" width="100%">'
-        f'<iframe srcdoc="{html.escape(page)}" title="{html.escape(caption)}" loading="lazy" style="position: absolute;'
-        f' left: 0; top: 0; width: 100%; height: calc(100% + {rows * ROW}px); border: 0"></iframe>'
+        f"{_image(picture, description)}"
+        f'<iframe srcdoc="{html.escape(page)}" title="{html.escape(caption)}" loading="{"eager" if carries else "lazy"}"'
+        f' style="position: absolute; left: 0; top: 0; width: 100%; height: calc(100% + {rows * ROW}px); border: 0"></iframe>'
         f"</div><figcaption>{html.escape(caption)}</figcaption></figure>"
     )
 
 
 def still(picture, description, caption):
-    """Return HTML that shows `picture` (PNG bytes), whose alternative text is `description`."""
-    source = base64.b64encode(picture).decode("ascii")
-    width = min(640, int.from_bytes(picture[16:20], "big"))  # a PNG's own, in its header
+    """Return HTML that shows `picture` (an image), whose alternative text is `description`."""
     return (
-        f'<figure style="margin: 0; max-width: {width}px"><img src="data:image/png;base64,{source}"'
-        f' alt="{html.escape(description)}" width="100%"><figcaption>{html.escape(caption)}</figcaption></figure>'
+        f'<figure style="margin: 0; max-width: {min(640, picture.width)}px">{_image(picture, description)}'
+        f"<figcaption>{html.escape(caption)}</figcaption></figure>"
     )
+
+
+def _image(picture, description):
+    source = base64.b64encode(webp(picture)).decode("ascii")
+    return f'<img src="data:image/webp;base64,{source}" alt="{html.escape(description)}" width="100%">'
 
 
 def _short(values):
