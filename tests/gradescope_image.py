@@ -8,7 +8,7 @@ the mirror, with Docker's defaults and with namespaces allowed. It asserts what 
 
 import argparse
 import json
-import os
+import re
 import shutil
 import subprocess
 import sys
@@ -82,10 +82,9 @@ def pips_settings():
     settings = {}
     for line in said.stdout.splitlines():
         name, _, value = line.partition("=")
-        words = [word.removeprefix("file://") for word in value.strip("'").split()]
-        settings[f"PIP_{name.rpartition('.')[2].upper().replace('-', '_')}"] = " ".join(
-            f"/{HOST}{word}" if os.path.exists(word) else word for word in words
-        )
+        words = value.strip("'").split()
+        seen = [re.sub(r"^(file://)?(?=/)", rf"\1/{HOST}", word) for word in words]
+        settings[f"PIP_{name.rpartition('.')[2].upper().replace('-', '_')}"] = " ".join(seen)
     return settings
 
 
