@@ -94,7 +94,27 @@ def _parser():
     )
     sub.add_argument("--no-feedback", action="store_true", help="leave out the feedback pages")
     sandbox_options(sub)
-    add("report", "write the class report from what is graded")
+    sub = add("report", "write the class report from what is graded")
+    sub.add_argument(
+        "--compare",
+        type=Path,
+        metavar="PATH",
+        help="with another class: its verdicts.csv, or a term's folder in archive/",
+    )
+    sub = add("extend", "give a student more time, and say what being late costs then")
+    sub.add_argument("student", metavar="STUDENT", help="as the folder in submitted/ is called")
+    for unit in ("days", "hours"):
+        sub.add_argument(
+            f"--{unit}",
+            type=_number,
+            default=0.0,
+            metavar="N",
+            help=f"{unit} after the due date; neither takes it back",
+        )
+    sub = add("term", "begin a new term: the old one's work goes into archive/, the course gets another name")
+    sub.add_argument(
+        "name", metavar="NAME", help="the course's new name in nbgrader's exchange, such as transforms-2027"
+    )
     sub = add("check", "grade one student's notebook files without a course; exit 1 unless all points are earned")
     sub.add_argument(
         "notebooks", nargs="+", type=Path, metavar="NOTEBOOK", help="files, or the folder with all of them"
@@ -143,10 +163,21 @@ def _natural(text):
     return number
 
 
+def _number(text):
+    number = float(text)
+    if not 0 <= number <= 10_000:
+        raise ValueError
+    return number
+
+
 def _positive(text):
     if _natural(text) == 0:
         raise ValueError
     return int(text)
 
 
-_natural.__name__, _positive.__name__ = "whole number", "positive number"  # as argparse names them in its errors
+_natural.__name__, _positive.__name__, _number.__name__ = (
+    "whole number",
+    "positive number",
+    "number",
+)  # as argparse names them in its errors

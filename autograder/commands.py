@@ -27,8 +27,17 @@ UNPROTECTED = (
 
 OPEN_TO_THE_NETWORK = (
     "[bold red]NOT PROTECTED:[/] whoever in the network reaches {} can run any code there as you, and read the course. Set up "
-    "TLS (README, “Larger classes”), or start scheduler and workers with `--host 127.0.0.1` on this machine alone."
+    "TLS (docs/larger_classes.md), or start scheduler and workers with `--host 127.0.0.1` on this machine alone."
 )
+
+NEW_TERM = f"""\
+The course is called {{name}} now (nbgrader_config.py). What is left to do:
+  1. Change what you want in source/, then `python3 -m autograder release`.
+  2. The class: `nbgrader db student import FILE.csv` (columns id,first_name,last_name,email,lms_user_id, or some of them).
+  3. The due date: `nbgrader db assignment add {ASSIGNMENT} --duedate "2027-01-31 18:00 UTC"`.
+  4. On a hub: c.CourseDirectory.course_id = "{{name}}" in the students' configuration, too; then
+     `nbgrader release_assignment {ASSIGNMENT}`.
+"""
 
 
 def run(options):
@@ -226,7 +235,7 @@ def _protection(here, unsafe, cluster=None):
 
 
 def _grade(here, students, protected, seed=None, jobs=os.cpu_count(), force=False, with_feedback=True, cluster=None):
-    """Grade, record, write feedback and report; returns the students of whom something could not be done."""
+    """Grade, record, write feedback and report; returns {student: what could not be done, and why}."""
     from .bridge.gradebook import Writer
     from .grading import settled
     from .grading.classroom import grade_class
@@ -234,7 +243,7 @@ def _grade(here, students, protected, seed=None, jobs=os.cpu_count(), force=Fals
     from .pages import report
 
     seed = new_seed() if seed is None else seed
-    failed, unsettled, without_feedback, fresh, counts = [], [], [], [], Counter()
+    failed, unsettled, without_feedback, fresh, counts = {}, [], {}, [], Counter()
     with here.one_grader_at_a_time(_busy), Writer(here) as writer:
         writer.can_record()
         looks = settled.Looks(here, writer.db_url)
@@ -244,9 +253,9 @@ def _grade(here, students, protected, seed=None, jobs=os.cpu_count(), force=Fals
             bar = progress.add_task("grading", total=len(students), counts="")
             for student, graded, problem in grade_class(here, students, against, writer, jobs, force, cluster):
                 if problem:
-                    failed.append(student)
+                    failed[student] = f"not graded: {problem}"
                     unsettled.append(student)
-                    progress.console.print(f"{student}: not graded: {problem}", markup=False)
+                    progress.console.print(f"{student}: {failed[student]}", markup=False)
                 if graded:
                     fresh.append(student)
                     unsettled += [] if graded.final else [student]
@@ -269,12 +278,13 @@ def _grade(here, students, protected, seed=None, jobs=os.cpu_count(), force=Fals
         looks.take()
         if with_feedback and not unsettled and students == here.students():
             looks.keep(students, writer.config, fresh, table)
-    _say_all(here, table, len(fresh), len(students) - len(fresh) - len(failed), seed)
-    return failed + without_feedback
+    lacking = failed | without_feedback
+    _say_all(here, table, len(fresh), len(students) - len(fresh) - len(failed), seed, lacking)
+    return lacking
 
 
-def _say_all(here, table, graded, unchanged, seed):
-    """What came of a run."""
+def _say_all(here, table, graded, unchanged, seed, lacking=None):
+    """What came of a run; of whom something is lacking, last, where it is not overlooked."""
     _show_class(table)
     drawn = f" (hidden cases drawn from seed {seed})" if graded else ""
     console.print(f"{graded} graded{drawn}, {unchanged} unchanged.")
@@ -285,13 +295,18 @@ def _say_all(here, table, graded, unchanged, seed):
         ("gradebook", here.gradebook),
     ):
         console.print(f"  {what:14} {where.relative_to(here.root)}", markup=False)
+    if lacking:
+        whose = f"{len(lacking)} student{'s lack' if len(lacking) > 1 else ' lacks'}"
+        errors.print(f"[bold red]Not all is done:[/] {whose} something; `python3 -m autograder grade` tries again.")
+        for student, why in lacking.items():
+            errors.print(f"  {student}: {why}", markup=False)
 
 
 def _write_feedback(here, grades, jobs):
-    """Make the pages that are missing or out of date; (students who could not get theirs, those of whom there is more to say)"""
+    """Make the pages that are missing or out of date; ({who could not get theirs: why}, those of whom there is more to say)"""
     from .pages import feedback
 
-    failed, told = [], []
+    failed, told = {}, []
     wanted = {student: told for student, told in grades.items() if not feedback.is_complete(here, student, told)}
     with _progress() as progress:
         bar = progress.add_task("feedback", total=len(wanted), counts="")
@@ -301,7 +316,7 @@ def _write_feedback(here, grades, jobs):
                 told.append(student)
                 progress.console.print(f"{student}: {problem}", markup=False)
             if not (here.feedback(student) / feedback.SUMMARY).is_file():
-                failed.append(student)
+                failed[student] = problem or "no feedback: there is no page"
     return failed, told
 
 
@@ -332,14 +347,14 @@ def _add_row(table, *cells):
 
 
 def _table(found, students):
-    """[(student, points, what needs a look)], in words, of those who have {student: [Row]}."""
+    """[(student, points, what needs a look)], in words, of those who have {student: Work}."""
     table = []
     for student in [student for student in students if student in found]:
-        rows, said = found[student], {}
-        points = f"{sum(row.score for row in rows):g} of {sum(row.max_score for row in rows):g}"
-        for row in rows:
-            if row.remark:
-                said.setdefault(row.remark, []).append(row.exercise)
+        work, said = found[student], {}
+        for row in work.rows:
+            if remark := work.remark(row):
+                said.setdefault(remark, []).append(row.exercise)
+        points = f"{work.points:g} of {work.most:g}"
         table.append([student, points, "; ".join(f"{what} ({', '.join(names)})" for what, names in said.items())])
     return table
 
@@ -357,9 +372,35 @@ def report(options):
 
     here = course()
     with Writer(here) as writer:
-        found = report.write(here, writer)
+        found = report.write(here, writer, options.compare)
     _show_class(_table(found, found))
     console.print(f"{here.reports.relative_to(here.root)}/index.html, verdicts.csv and grades.csv are written.")
+    return 0
+
+
+def extend(options):
+    from datetime import timedelta
+
+    from .bridge.gradebook import Writer
+    from .bridge.lateness import extend
+
+    here = course()
+    with here.one_grader_at_a_time(_busy), Writer(here) as writer:
+        extension = timedelta(days=options.days, hours=options.hours)
+        line = extend(writer.gradebook, writer.config, options.student, extension)
+    console.print(line, markup=False)
+    console.print("`python3 -m autograder grade` renews the report and the student's pages.", markup=False)
+    return 0
+
+
+def term(options):
+    from .bridge.term import begin
+
+    here = course()
+    archive, moved = begin(here, options.name, _busy)
+    if archive:
+        console.print(f"{', '.join(moved)}: now in {archive.relative_to(here.root)}/.", markup=False)
+    console.print(NEW_TERM.format(name=options.name), markup=False, end="")
     return 0
 
 
@@ -462,5 +503,5 @@ def test(options):
     return subprocess.call([sys.executable, "-m", "pytest", *tier, *(options.extra or spread)])
 
 
-_ALL = demo, lab, release, collect, grade, report, check, prove, doctor, package, export, test
+_ALL = demo, lab, release, collect, grade, report, extend, term, check, prove, doctor, package, export, test
 COMMANDS = {command.__name__: command for command in _ALL}

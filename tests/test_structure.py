@@ -2,6 +2,7 @@
 
 import ast
 import graphlib
+import re
 import subprocess
 
 import pytest
@@ -56,7 +57,26 @@ TOP_LEVEL = {
     "autograder",
     "tests",
     "findings",
+    "docs",
 }
+
+
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_lead_to_what_is_there(page):
+    links = re.findall(r"\]\(([^)\s]+)\)", page.read_text(encoding="utf-8"))
+    for path, _, section in (link.partition("#") for link in links if "://" not in link):
+        target = (page.parent / path).resolve() if path else page
+        assert target.exists(), path
+        titles = re.findall(r"(?m)^#+ (.*)$", target.read_text(encoding="utf-8")) if section else []
+        assert not section or section in [re.sub(r"[^\w -]", "", title).lower().replace(" ", "-") for title in titles]
+
+
+def test_every_page_is_reached_from_the_readme():
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert [page.name for page in PAGES[1:] if f"({page.relative_to(ROOT).as_posix()}" not in text] == []
 
 
 def modules(package):

@@ -11,7 +11,6 @@ import sqlite3
 import time
 from importlib import resources
 
-import nbformat
 from nbgrader.api import (
     Assignment,
     BaseCell,
@@ -23,8 +22,7 @@ from nbgrader.api import (
     SubmittedAssignment,
     SubmittedNotebook,
 )
-from nbgrader.preprocessors import AssignLatePenalties
-from sqlalchemy import Engine, create_engine, event, inspect, select, update
+from sqlalchemy import Engine, create_engine, event, func, inspect, or_, select, update
 from sqlalchemy.exc import DatabaseError, OperationalError
 
 from ..course import ASSIGNMENT, CourseError
@@ -33,7 +31,7 @@ from ..grading.marks import CellGrade, NotebookGrades
 from ..grading.records import ALONE
 from ..intake.submission import TIMESTAMP
 from ..names import table
-from . import registration
+from . import lateness, registration
 from .nbgrader_api import db_url
 from .settings import settings
 
@@ -41,6 +39,7 @@ EXPORTED = (
     *("assignment", "duedate", "timestamp", "student_id", "last_name", "first_name", "email"),
     *("raw_score", "late_submission_penalty", "score", "max_score"),
 )  # the columns of `nbgrader export`
+BY_HAND = "by_hand"  # a last column of tables, where a person has given points in the grader's place
 PATIENCE = 60.0  # seconds to wait for a database that somebody else has locked
 
 
@@ -108,7 +107,9 @@ def grades(gradebook, *only):
 
     for told, penalty in of(SubmittedNotebook, SubmittedNotebook.late_submission_penalty):
         told.penalty = penalty or 0.0
-    for told, cell, *points in of(Grade, BaseCell.name, Grade.score, Grade.max_score, Grade.needs_manual_grade):
+    by_hand = or_(Grade.manual_score.is_not(None), Grade.extra_credit != 0.0)
+    points = Grade.score, Grade.max_score, Grade.needs_manual_grade, func.coalesce(by_hand, False)
+    for told, cell, *points in of(Grade, BaseCell.name, *points):
         told.cells[cell] = CellGrade(*points)
     for told, cell, comment in of(Comment, BaseCell.name, Comment.comment):
         if comment:
@@ -130,6 +131,7 @@ class Writer:
             self.stale = None
         except CourseError as error:
             self.stale = error  # the gradebook may be read and cleared; who wants to record first asks `can_record`
+        lateness.penalize(self.gradebook, self.config)
         cells = self.gradebook.db.execute(select(BaseCell.id, BaseCell.name)).all()
         self.cells = {identifier: name for identifier, name in cells}
         return self
@@ -163,7 +165,14 @@ class Writer:
         self._write_files(graded)
 
     def export(self, path):
-        """Write the grades as `nbgrader export` does, but in one order, and so that a name stays in its cell, and is not run."""
+        """Write the grades as `nbgrader export` does, but in one order, and so that a name stays in its cell, and is not run.
+
+        Where a person has given points in the grader's place, a last column names the exercises.
+        """
+        by_hand = {
+            student: ";".join(cell for released in self.course.notebooks.values() for cell in _by_hand(released, told))
+            for student, told in self.grades().items()
+        }
         assignment = self.gradebook.find_assignment(ASSIGNMENT)
         most, due = assignment.max_score, assignment.duedate
         of = SubmittedAssignment
@@ -182,6 +191,8 @@ class Writer:
             told = who.id, who.last_name, who.first_name, who.email
             total = max(0.0, points - penalty)
             rows.append((ASSIGNMENT, due, when, *told, points, penalty, total, most))
+        if any(by_hand.values()):
+            rows = [(*rows[0], BY_HAND), *((*row, by_hand.get(row[3], "")) for row in rows[1:])]
         replace(path, table(rows))
 
     def grades(self):
@@ -216,30 +227,54 @@ class Writer:
         given = {"timestamp": graded.receipts[TIMESTAMP]} if TIMESTAMP in graded.receipts else {}
         submission = book.update_or_create_submission(ASSIGNMENT, graded.student, **given)
         notebooks = {notebook.id: graded.marks.get(notebook.name) for notebook in submission.notebooks}
+        names = {notebook.id: notebook.name for notebook in submission.notebooks}
         grades, comments = [], []
-        for identifier, notebook, cell, manual_score in self._rows(Grade, Grade.manual_score, notebooks):
-            marks = notebooks[notebook]
-            score = marks.scores[self.cells[cell]] if marks else 0
+        by_hand = Grade.manual_score, Grade.needs_manual_grade
+        for identifier, notebook, cell, manual_score, waited in self._rows(Grade, notebooks, *by_hand):
+            marks, name = notebooks[notebook], self.cells[cell]
+            score = marks.scores[name] if marks else 0
             waiting = marks is not None and (manual_score is not None or score is None)
+            if manual_score is not None and name in self._as_before(graded, names[notebook]):
+                waiting = waited  # what a person gave still is for what they saw
             grades.append({"id": identifier, "auto_score": score, "needs_manual_grade": waiting})
-        for identifier, notebook, cell, _ in self._rows(Comment, Comment.auto_comment, notebooks):
+        for identifier, notebook, cell in self._rows(Comment, notebooks):
             if notebooks[notebook]:
                 comments.append({"id": identifier, "auto_comment": notebooks[notebook].comments[self.cells[cell]]})
-        penalties = [{"id": identifier, "late_submission_penalty": None} for identifier in notebooks]
-        for kind, rows in ((Grade, grades), (Comment, comments), (SubmittedNotebook, penalties)):
+        for kind, rows in ((Grade, grades), (Comment, comments)):
             if rows:
                 book.db.execute(update(kind), rows)
         book.db.commit()
-        if submission.total_seconds_late > 0:
-            self._penalize(graded)
+        lateness.penalize(book, self.config, graded.student)
 
-    def _rows(self, table, column, notebooks):
-        """(id, notebook, cell, column) of what a submission has in a table; one query instead of one for each cell."""
-        columns = select(table.id, table.notebook_id, table.cell_id, column)
+    def _as_before(self, graded, name):
+        """The cells of a notebook of which a person would see the same as when it was graded last: of a question its answer, of
+        an exercise all of the student's code."""
+        try:
+            text = (self.course.autograded(graded.student) / f"{name}.ipynb").read_text(encoding="utf-8")
+            before, now = map(_work, (text, graded.notebooks[name]))
+        except (OSError, ValueError, LookupError, TypeError, AttributeError):
+            return set()  # not handed in then or now; or somebody has damaged the file
+        return {cell for cell, work in now.items() if before.get(cell) == work}
+
+    def _rows(self, table, notebooks, *columns):
+        """(id, notebook, cell, *columns) of what a submission has in a table; one query instead of one for each cell."""
+        columns = select(table.id, table.notebook_id, table.cell_id, *columns)
         return self.gradebook.db.execute(columns.where(table.notebook_id.in_(notebooks))).all()
 
-    def _penalize(self, graded):
-        """Late penalties are nbgrader's to decide, by the plug-in that its configuration names."""
-        for name in graded.notebooks:
-            resources = {"notebook": name, "assignment": ASSIGNMENT, "student": graded.student, "db_url": self.db_url}
-            AssignLatePenalties(config=self.config).preprocess(nbformat.v4.new_notebook(), {"nbgrader": resources})
+
+def _by_hand(released, grades):
+    """The exercises of a notebook whose points a person has given."""
+    cells = grades[released.name].cells if released.name in grades else {}
+    return [name for name in released.points if name in cells and cells[name].by_hand]
+
+
+def _work(text):
+    """{graded cell: what of the student's work it is for} of an autograded notebook."""
+    cells = json.loads(text)["cells"]
+    code = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
+    told = ((cell["metadata"].get("nbgrader", {}), cell) for cell in cells)
+    return {
+        entry["grade_id"]: ["".join(cell["source"]), cell.get("attachments")] if entry.get("solution") else code
+        for entry, cell in told
+        if entry.get("grade")
+    }

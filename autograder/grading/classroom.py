@@ -8,6 +8,7 @@ from functools import partial
 
 from sqlalchemy.exc import SQLAlchemyError
 
+from ..course import CourseError
 from ..intake.submission import submission_of
 from .failure import Failure
 from .grade import grade_submission, not_judged
@@ -74,7 +75,7 @@ def _record(writer, graded):
     try:
         writer.record(graded)
     except Exception as error:
-        return Failure.of(error, SQLAlchemyError)  # locked, full, read-only, …
+        return Failure.of(error, SQLAlchemyError, CourseError)  # locked, full, read-only, …
     return None
 
 

@@ -190,6 +190,7 @@ def grade_notebook(
 
     The record is what reports and feedback are made from, and tells what need not be graded again.
     """
+    left = sandbox.allowance.left
     verdicts, examples = judge(intake, released, run.keys, sandbox, run.public)
     intake.notebook.metadata[RECORD] = nbformat.from_dict(
         {
@@ -197,6 +198,7 @@ def grade_notebook(
             "verdicts": {name: told(verdict) for name, verdict in verdicts.items()},
             "examples": examples,
             "problems": [*submission.problems, *intake.problems],
+            "seconds": round(left - sandbox.allowance.left, 3),
             **_grading(submission, run),
         }
     )

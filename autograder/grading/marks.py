@@ -30,11 +30,15 @@ def marks(notebook):
 
 @dataclass
 class CellGrade:
-    """What a cell earned, by the grader or by a human; `waiting` for a human who has not given any yet."""
+    """What a cell earned, by the grader or by a human; `waiting` for a human who has not given any yet.
+
+    by_hand: a human has given it, or points beside those of the grader
+    """
 
     earned: float
     most: float
     waiting: bool
+    by_hand: bool = False
 
 
 @dataclass

@@ -139,10 +139,21 @@ def _account(uid):
 
 
 class ReleaseFeedback(ExchangeReleaseFeedback):
-    """`nbgrader release_feedback`, which passes over those whose work did not come through the exchange."""
+    """`nbgrader release_feedback`: it passes over whose work did not come through the exchange, and names who has no pages."""
 
     def copy_files(self):
-        for folder in sorted(glob.glob(self.src_path)):
+        made = sorted(glob.glob(self.src_path))
+        graded = self.coursedir.format_path(
+            self.coursedir.autograded_directory, self.coursedir.student_id, self.coursedir.assignment_id
+        )
+        for student in sorted(
+            {Path(path).parent.name for path in glob.glob(graded)} - {Path(path).parent.name for path in made}
+        ):
+            self.log.warning(
+                "%s: not released; there are no pages. `python3 -m autograder grade` makes them, or says why not.",
+                student,
+            )
+        for folder in made:
             known_by, _ = receipts(Path(folder))
             if {SECRET, TIMESTAMP} <= known_by.keys():
                 self.src_path = glob.escape(folder)

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from nbgrader.api import Student
 
+from ..bridge.gradebook import grades
 from ..course import ASSIGNMENT, CourseError
 from ..names import runs, table
 from . import report_data as findings
@@ -20,20 +21,22 @@ from . import report_data as findings
 class StudentTotal:
     """The points of a student (nbgrader's Student), automatic and hand-given ones together, and less what being late costs.
 
-    waiting: whether a human has to grade yet
+    waiting: whether a human has to grade yet; grades: {notebook: NotebookGrades}
     """
 
     student: Student
     score: float
     waiting: bool
+    grades: dict
 
 
 def totals(gradebook):
     """[StudentTotal] of those in nbgrader's gradebook who handed the assignment in, by their ids."""
-    found = []
+    found, told = [], grades(gradebook)
     for done in gradebook.assignment_submissions(ASSIGNMENT):
         score = max(0.0, done.score - (done.late_submission_penalty or 0.0))  # as nbgrader reckons
-        found.append(StudentTotal(done.student, score, bool(done.needs_manual_grade)))
+        grades_of_one = told.get(done.student_id, {})
+        found.append(StudentTotal(done.student, score, bool(done.needs_manual_grade), grades_of_one))
     return sorted(found, key=lambda total: total.student.id)
 
 
@@ -71,7 +74,9 @@ def moodle(course, assignment, found, column, absent):
     yield "First name", "Last name", "Username", "ID number", "Email address", column, f"{column} (feedback)"
     for total in found:
         who = total.student
-        feedback = "; ".join(map(_said, findings.work(course, who.id).rows))
+        work = findings.work(course, who.id)
+        work.take(total.grades)
+        feedback = "; ".join(_said(row, work.remark(row)) for row in work.rows)
         yield who.first_name, who.last_name, who.id, who.lms_user_id, who.email, round(total.score, 2), feedback
 
 
@@ -158,7 +163,7 @@ def remarks(found, name, absent=()):
         )
 
 
-def _said(row):
+def _said(row, remark):
     """One exercise of Moodle's feedback, such as "chain 0 of 2 (order-reversed)"."""
-    why = row.remark.replace(";", ", ")
+    why = ", ".join(part.strip() for part in remark.split(";"))
     return f"{row.exercise} {row.score:g} of {row.max_score:g}" + (f" ({why})" if why else "")

@@ -216,6 +216,7 @@ def _cell(name, most, released, grades, verdict, page):
         "most": most,
         "right": told.earned >= most,
         "waiting": told.waiting,
+        "by_hand": told.by_hand,
         "comment": grades.comments.get(name, ""),
         "mistakes": panel.mistakes(verdict) if verdict else [],
         "link": page and f"{page}#{quote(name)}",

@@ -13,7 +13,8 @@ from urllib.parse import quote
 
 from markupsafe import Markup
 
-from ..course import ASSIGNMENT
+from ..bridge.gradebook import BY_HAND
+from ..course import ASSIGNMENT, CourseError
 from ..files import replace
 from ..grading.judge import Row
 from ..grading.records import missing
@@ -30,20 +31,23 @@ SHARED = 2  # students that make a misconception one of the class's, with a pict
 FORMGRADER = f"http://localhost:8888/formgrader/gradebook/{ASSIGNMENT}/"
 
 
-def write(course, writer):
-    """Write index.html, verdicts.csv and grades.csv into reports/transforms/; {student: [Row]} they were made from.
+def write(course, writer, compare=None):
+    """Write index.html, verdicts.csv and grades.csv into reports/transforms/; {student: Work} they were made from.
 
+    compare: the path of another class's verdicts.csv, or of a folder that has one; raises CourseError when it cannot be read
     Shown are the students whose work is there and in the gradebook, which the gradebook.Writer knows.
     """
     handed_in, known = course.students(), writer.students()
     works = {student: _work(course, student) for student in handed_in if student in known}
+    grades = writer.grades()
+    for student, work in works.items():
+        work.take(grades[student])
     runs = findings.runs(works)
     course.reports.mkdir(parents=True, exist_ok=True)
     _write_verdicts(course, works, runs[0].graded.timestamp() if runs else None)
     writer.export(course.reports / "grades.csv")
     since, before = _before(course)
     shared, rare = _misunderstood(course, works)
-    grades = writer.grades()
     waiting = [
         (student, notebook, cell)
         for student in works
@@ -51,6 +55,7 @@ def write(course, writer):
         for cell, points in found.cells.items()
         if points.waiting
     ]
+    other = _verdicts_of(compare) if compare else None
     page = _template(course).render(
         assignment=ASSIGNMENT,
         works=works,
@@ -67,10 +72,15 @@ def write(course, writer):
         formgrader=FORMGRADER,
         since=since,
         changes=findings.changes(before, works) if before else None,
+        together=findings.together(works),
+        fewest=findings.FEWEST,
+        slow=findings.slow(works),
+        compare=compare,
+        compared=_compared(compare, other, works) if compare else None,
         by_hand={student: _by_hand(course, grades[student]) for student in works},
     )
     replace(course.reports / "index.html", TURNING.sub("", printable(page)))
-    return {student: work.rows for student, work in works.items()}
+    return works
 
 
 def _work(course, student):
@@ -89,7 +99,7 @@ def _work(course, student):
 
 
 def _write_verdicts(course, works, graded):
-    """Write verdicts.csv; the one of an earlier grading is kept as before.csv.
+    """Write verdicts.csv, where a last column tells of points by hand; the one of an earlier grading is kept as before.csv.
 
     graded: when the last of these notebooks was graded, in seconds; the file gets this as its date. So a report that is
     made again from the same grading is compared with the same file as the first time.
@@ -97,9 +107,13 @@ def _write_verdicts(course, works, graded):
     path = course.reports / "verdicts.csv"
     if graded and path.exists() and path.stat().st_mtime < graded:
         path.replace(course.reports / "before.csv")
-    values = attrgetter(*COLUMNS[1:])
-    rows = ((student, *values(row)) for student, work in works.items() for row in work.rows)
-    replace(path, table([COLUMNS, *rows]))
+    values, some = attrgetter(*COLUMNS[1:]), any(work.by_hand for work in works.values())
+    rows = [
+        (student, *values(row), *(["yes" if row.exercise in work.by_hand else ""] if some else []))
+        for student, work in works.items()
+        for row in work.rows
+    ]
+    replace(path, table([[*COLUMNS, *([BY_HAND] if some else [])], *rows]))
     if graded:
         os.utime(path, (graded, graded))
 
@@ -120,6 +134,30 @@ def _before(course):
     except (ValueError, KeyError, TypeError, csv.Error):
         return since, {}
     return (since, dict(scores)) if scores else (None, {})
+
+
+def _verdicts_of(path):
+    """The rows of a verdicts.csv as dictionaries: the file itself, or that of a course, of a term's archive, or of reports/."""
+    places = [path, *(path / below / "verdicts.csv" for below in ("", ASSIGNMENT, f"reports/{ASSIGNMENT}"))]
+    for place in places:
+        if place.is_file():
+            try:
+                with open(place, newline="", encoding="utf-8") as file:
+                    return list(csv.DictReader(file))
+            except (UnicodeDecodeError, csv.Error) as error:
+                raise CourseError(f"{place}: this is no verdicts.csv ({error}).") from None
+    raise CourseError(
+        f"{path}: there is no verdicts.csv to compare with. Name the file, or a term's folder in archive/."
+    )
+
+
+def _compared(path, rows, works):
+    try:
+        return findings.compared(rows, works)
+    except (LookupError, ValueError, TypeError, AttributeError):
+        raise CourseError(
+            f"{path}: this is no verdicts.csv: a row lacks a student, an exercise, or its points."
+        ) from None
 
 
 # --- the page -------------------------------------------------------------------------------------------------------

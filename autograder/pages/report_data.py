@@ -3,11 +3,13 @@
 Throughout, `works` is {student: Work}, in the order in which they are to be shown.
 """
 
+import itertools
 import os
 from collections import Counter, defaultdict
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from datetime import UTC, datetime
 from math import ceil
+from statistics import correlation, median
 from typing import NamedTuple
 
 from transform_lab.judging import panel
@@ -17,6 +19,10 @@ from ..grading.records import missing, recorded, recorded_alone, verdicts
 from ..intake.submission import NOT_HANDED_IN
 
 MOST_BARS = 10  # of the distribution of points, besides the one for all points
+FEWEST = 10  # students of whom a correlation tells anything
+MOST_PAIRS = 10  # of misconceptions that go together
+BOTH, TOGETHER = 3, 0.4  # from so many students, and this correlation, on they do
+SLOW, TIMES_SLOWER = 10.0, 5  # seconds, and times the median, from which on a student's grading stands out
 
 
 @dataclass
@@ -25,14 +31,18 @@ class Work:
 
     rows: a Row for each exercise; said: {exercise: [(what the answer shows, the hint) for each mistake]}, as the student reads
     undone: exercises that nobody has filled in; absent: notebooks that were not handed in
+    by_hand: {exercise: the grader's own points}, where a person has given others in their place
     problems: what was odd about the files, in words; runs: {seed of the hidden cases: when it was used last}
+    seconds: of waiting for its processes, with which grading took its time
     """
 
     rows: list = field(default_factory=list)
     said: dict = field(default_factory=dict)
     undone: set = field(default_factory=set)
+    by_hand: dict = field(default_factory=dict)
     absent: list = field(default_factory=list)
     problems: list = field(default_factory=list)
+    seconds: float = 0.0
     runs: dict = field(default_factory=dict)
 
     @property
@@ -42,6 +52,18 @@ class Work:
     @property
     def most(self):
         return sum(row.max_score for row in self.rows)
+
+    def take(self, grades):
+        """Have the points be those of the gradebook, {notebook: NotebookGrades}, where a person has given some by hand."""
+        for i, row in enumerate(self.rows):
+            told = grades[row.notebook].cells.get(row.exercise) if row.notebook in grades else None
+            if told and told.by_hand:
+                self.by_hand[row.exercise] = row.score
+                self.rows[i] = replace(row, score=told.earned)
+
+    def remark(self, row):
+        """What a table says of a row in a word or two; "" where there is nothing to say."""
+        return "; ".join(filter(None, [row.remark, "points by hand" if row.exercise in self.by_hand else ""]))
 
     def is_undone(self, row):
         return STATUSES[row.status].counts == "undone" or row.exercise in self.undone
@@ -66,6 +88,7 @@ def work(course, student):
                 found.undone.add(exercise)
         problems |= dict.fromkeys(record["problems"])
         graded = datetime.fromisoformat(record["graded"]).astimezone()
+        found.seconds += float(record.get("seconds", 0.0))  # not in records of an older grader
         found.runs[record["seed"]] = max(graded, found.runs.get(record["seed"], graded))
     if not records and (alone := recorded_alone(course, student)):
         problems |= dict.fromkeys(alone["problems"])
@@ -138,6 +161,39 @@ def misunderstood(works):
     return sorted(result, key=lambda found: (-found.students, -sum(n for _, n in found.exercises), found.id))
 
 
+class Pair(NamedTuple):
+    """Two misconceptions that go together: how many students have either, and both."""
+
+    one: str
+    other: str
+    of_one: int
+    of_other: int
+    both: int
+
+
+def together(works):
+    """The Pairs of misconceptions that students have together much more often than chance would have it, the closest first.
+
+    The measure is the phi coefficient, which is the correlation of the two as numbers 0 and 1. Left out is what one function
+    has in several parts at once, such as two mistakes in one exercise.
+    """
+    if len(works) < FEWEST:
+        return []
+    who: dict = defaultdict(lambda: defaultdict(set))  # {misconception: {student: {exercises}}}
+    for student, found in works.items():
+        for row in found.rows:
+            for identifier in filter(None, row.misconception.split(";")):
+                who[identifier][student].add(row.exercise)
+    pairs = []
+    for one, other in itertools.combinations(sorted(who), 2):
+        both = {s for s in who[one].keys() & who[other].keys() if len(who[one][s] | who[other][s]) > 1}
+        if len(both) >= max(BOTH, len(works) / 50):
+            have = [[student in who[of] for student in works] for of in (one, other)]
+            if not any(all(each) for each in have) and (phi := correlation(*have)) >= TOGETHER:
+                pairs.append((phi, Pair(one, other, len(who[one]), len(who[other]), len(both))))
+    return [pair for _, pair in sorted(pairs, key=lambda found: (-found[0], found[1]))[:MOST_PAIRS]]
+
+
 # --- scores ---------------------------------------------------------------------------------------------------------
 
 
@@ -162,6 +218,7 @@ class Result(NamedTuple):
     failed: int  # raised an error, was stopped, or cannot be read
     undone: int  # left as it was, or not handed in
     average: float
+    tells: float | None  # how well it tells strong from weak, see `_tells`
 
 
 def results(works):
@@ -172,8 +229,19 @@ def results(works):
         shares = [row.score / row.max_score if row.max_score else 1.0 for row in column]
         kinds = (counts[kind] for kind in ("right", "named", "unnamed", "failed", "undone"))
         first = column[0]
-        found.setdefault(first.notebook, []).append(Result(first.exercise, *kinds, sum(shares) / len(shares)))
+        rest = [work.points - row.score for work, row in zip(works.values(), column)]
+        average = sum(shares) / len(shares)
+        found.setdefault(first.notebook, []).append(Result(first.exercise, *kinds, average, _tells(shares, rest)))
     return found
+
+
+def _tells(shares, rest):
+    """The correlation between what each student earned here and in all other exercises (the corrected item-total correlation
+    of test theory); None where too few handed in, or all earned the same.
+    """
+    if len(shares) < FEWEST or min(shares) == max(shares) or min(rest) == max(rest):
+        return None
+    return correlation(shares, rest)
 
 
 def _outcome(work, row):
@@ -216,6 +284,16 @@ def look(works):
     return Look({title: who for title, who in reasons.items() if who}, files, dict(sorted(absent.items())))
 
 
+def slow(works):
+    """{student: (seconds, how many times the median)} of those whose grading took much longer than the others'."""
+    usual = median([found.seconds for found in works.values() if found.seconds] or [0.0])
+    return {
+        student: (found.seconds, found.seconds / usual)
+        for student, found in works.items()
+        if found.seconds > SLOW and found.seconds > TIMES_SLOWER * usual
+    }
+
+
 # --- what changed ---------------------------------------------------------------------------------------------------
 
 
@@ -246,6 +324,51 @@ def changes(before, works):
             scores[student] = moved
     ordered = dict(sorted(scores.items(), key=lambda item: (_gain(item[1]), item[0])))
     return Changes(ordered, sorted(now.keys() - before.keys()), sorted(before.keys() - now.keys()))
+
+
+class Then(NamedTuple):
+    """A share of students then and now, from 0 to 1; `then` is None for what there was not."""
+
+    name: str
+    then: float | None
+    now: float
+
+
+def compared(before, works):
+    """([Then of each exercise's average share of points], [Then of each misconception's share of students]), those that moved
+    most first.
+
+    before: [row of another class's verdicts.csv, as a dictionary]; raises ValueError or LookupError where it is none
+    """
+    (earned, had), (earns, have) = _shares(before), _shares(_as_read(works))
+    exercises = [Then(name, earned.get(name), now) for name, now in earns.items()]
+    misconceptions = [Then(name, had.get(name, 0.0), have.get(name, 0.0)) for name in {**have, **had}]
+    return tuple(
+        sorted(found, key=lambda of: (-abs(of.now - (of.now if of.then is None else of.then)), of.name))
+        for found in (exercises, misconceptions)
+    )
+
+
+def _as_read(works):
+    for student, found in works.items():
+        for row in found.rows:
+            yield {"student": student, **asdict(row)}
+
+
+def _shares(rows):
+    """({exercise: average share of points}, {misconception: share of students who have it}) of a class's rows."""
+    rows = list(rows)
+    students = {row["student"] for row in rows}
+    earned, who = defaultdict(list), defaultdict(set)
+    for row in rows:
+        most = float(row["max_score"])
+        earned[row["exercise"]].append(float(row["score"]) / most if most else 1.0)
+        for identifier in filter(None, row["misconception"].split(";")):
+            who[identifier].add(row["student"])
+    return (
+        {name: sum(shares) / len(shares) for name, shares in earned.items()},
+        {identifier: len(found) / len(students) for identifier, found in who.items()},
+    )
 
 
 def _gain(changed):

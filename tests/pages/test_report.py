@@ -3,12 +3,14 @@
 import csv
 import json
 import os
+import re
 import shutil
 from collections import Counter
 from html.parser import HTMLParser
 from urllib.parse import unquote
 
 import nbformat
+import numpy as np
 import pytest
 from editing import solve
 from support import run, verdicts
@@ -139,7 +141,7 @@ def test_not_done_is_told_from_an_error(graded):
     words = read(graded).words
     with_error = findings.results({name: findings.work(graded, name) for name in graded.students()})["3_chaining"][0]
     assert (with_error.failed, with_error.undone) == (3, 1)  # kofi's file, lena's loop, an error; ivan
-    assert sum(with_error[1:-1]) == 8
+    assert sum(with_error[1:6]) == 8
     look = words[words.index("Had to be stopped") :]
     assert "ivan" not in look[: look.index("Not handed in")]
 
@@ -235,6 +237,99 @@ def test_changes_are_those_of_who_is_in_both():
     changes = findings.changes(before, now)
     assert changes.scores == {"b": [("x", 1.0, 2.0), ("y", 1.0, 0.0)], "c": [("x", 0.0, 2.0)]}
     assert (changes.new, changes.gone, changes.better, changes.worse) == (["new"], ["gone"], 1, 0)
+
+
+def class_of(**columns):
+    """{student: Work} of exercises' points of 2, each column with one number for each student; misconceptions by `wrong`."""
+    return {
+        f"s{n:02}": Work([Row("1", name, points, 2.0, "graded") for name, points in zip(columns, each)])
+        for n, each in enumerate(zip(*columns.values()))
+    }
+
+
+def test_an_exercise_tells_as_well_as_it_goes_with_the_others():
+    strong_first = [2.0] * 6 + [0.0] * 6
+    works = class_of(
+        like_the_rest=strong_first,
+        the_rest=strong_first,
+        reversed=strong_first[::-1],
+        easy=[2.0] * 12,
+        odd=[2.0, 0.0] * 6,
+    )
+    tells = {result.exercise: result.tells for result in findings.results(works)["1"]}
+    assert tells["easy"] is None and tells["like_the_rest"] == tells["the_rest"] > 0 > tells["reversed"]
+    expected = np.corrcoef([1.0] * 6 + [0.0] * 6, [w.points - w.rows[0].score for w in works.values()])[0, 1]
+    assert tells["like_the_rest"] == pytest.approx(expected) and abs(tells["odd"]) < 0.3
+    few = dict(list(works.items())[: findings.FEWEST - 1])
+    assert {result.tells for result in findings.results(few)["1"]} == {None}
+
+
+def with_misconceptions(*students):
+    """{student: Work} of {exercise: misconceptions} for each."""
+    return {
+        f"s{n:02}": Work([Row("1", name, 0.0, 2.0, "graded", of.get(name, "")) for name in ("x", "y", "z")])
+        for n, of in enumerate(students)
+    }
+
+
+def test_misconceptions_go_together_when_chance_would_not_have_it():
+    pairs = findings.together(
+        with_misconceptions(*[{"x": "a", "y": "b"}] * 5, {"x": "a"}, *[{"z": "c"}] * 4, *[{}] * 10)
+    )
+    assert pairs == [("a", "b", 6, 5, 5)]
+    assert findings.together(with_misconceptions(*[{"x": "a", "y": "b"}] * 5, *[{}] * 4)) == []  # too few students
+    assert (
+        findings.together(with_misconceptions(*[{"x": "a", "y": "b"}] * 2, *[{}] * 20)) == []
+    )  # too few who have both
+    assert findings.together(with_misconceptions(*[{"x": "a;b"}] * 5, *[{}] * 10)) == []  # it is one function
+    assert findings.together(with_misconceptions(*[{"x": "a", "y": "b"}] * 12)) == []  # everybody has everything
+    mixed = [{"x": "a"}, {"y": "b"}, {"x": "a", "y": "b"}, {}] * 5
+    assert findings.together(with_misconceptions(*mixed)) == []  # as often as chance would have it
+
+
+def test_whose_grading_took_long_stands_out():
+    works = {f"s{n}": Work(seconds=seconds) for n, seconds in enumerate([1.0, 2.0, 2.0, 0.0, 9.9, 11.0])}
+    assert findings.slow(works) == {"s5": (11.0, 5.5)}
+    assert findings.slow({f"s{n}": Work(seconds=20.0) for n in range(9)}) == findings.slow({}) == {}
+
+
+def test_another_class_is_compared_by_shares(course, tmp_path):
+    same = tmp_path / "archive" / "last"
+    shutil.copytree(course.reports, same / "reports" / "transforms")
+    lines = (same / "reports" / "transforms" / "verdicts.csv").read_text().splitlines(keepends=True)
+    half = tmp_path / "half.csv"
+    half.write_text(lines[0] + "".join(line for line in lines if line.startswith(("ben,", "goran,"))))
+    for path in (same, same / "reports", same / "reports" / "transforms" / "verdicts.csv"):
+        assert run(course, "report", "--compare", str(path))[0] == 0
+        words = read(course).section("Compared with another class", "All students")
+        shares = re.findall(r"(\d+) % (\d+) %", words)
+        assert len(shares) > 16 and all(then == now for then, now in shares)
+    assert run(course, "report", "--compare", str(half))[0] == 0
+    words = read(course).section("Compared with another class", "All students")
+    rows = [row for row in verdicts(course) if row["exercise"] == "chain"]
+    then, now = (
+        round(100 * sum(float(row["score"]) / float(row["max_score"]) for row in of) / len(of))
+        for of in ([row for row in rows if row["student"] in ("ben", "goran")], rows)
+    )
+    assert f"chain {then} % {now} %" in words
+    assert run(course, "report")[0] == 0 and "Compared" not in read(course).words
+
+
+@pytest.mark.parametrize(
+    "content, words",
+    [
+        (None, "there is no verdicts.csv"),
+        (b"\xff\xfe\xfd", "this is no verdicts.csv"),
+        (b"student,points\na,1\n", "this is no verdicts.csv"),
+        (b"student,exercise,score,max_score,misconception\na,chain,much,2,\n", "this is no verdicts.csv"),
+    ],
+)
+def test_what_is_no_table_of_verdicts_is_refused_in_words(course, tmp_path, content, words):
+    path = tmp_path / "other.csv"
+    if content is not None:
+        path.write_bytes(content)
+    code, said = run(course, "report", "--compare", str(path))
+    assert code == 2 and words in said and str(path) in said and "Traceback" not in said
 
 
 # --- how it is made -------------------------------------------------------------------------------------------------
@@ -386,8 +481,8 @@ def test_a_damaged_record_costs_its_student_alone(course, damage):
     damage(notebook["metadata"]["transform_lab"]["rows"])
     path.write_text(json.dumps(notebook), encoding="utf-8")
     with Writer(course) as writer:
-        rows = report.write(course, writer)
-    assert set(rows) == set(course.students()) and sum(row.score for row in rows["ben"]) > 0
+        works = report.write(course, writer)
+    assert set(works) == set(course.students()) and works["ben"].points > 0
     assert "lena" in (course.reports / "index.html").read_text(encoding="utf-8")
 
 
