@@ -5,6 +5,7 @@ import fcntl
 import os
 import shutil
 import subprocess
+import sys
 import sysconfig
 import tempfile
 from collections import Counter
@@ -186,6 +187,16 @@ def open_python():
                 yield str(python)
                 return
     lacking("needs a Python that other users may read")
+
+
+@pytest.fixture(scope="session")
+def container(open_python):
+    """The command that enters a container (see container.py), as far as its ROOT; tests that need it need root."""
+    command = [sys.executable, str(ROOT / "tests/container.py")]
+    entered = subprocess.run([*command, "/", "true"], capture_output=True, text=True)
+    if entered.returncode != 0:
+        lacking(f"needs namespaces, for a container: {entered.stderr}")
+    return command
 
 
 @pytest.fixture(scope="session")

@@ -13,9 +13,12 @@ from support import PATIENCE, ROOT, wait_for
 
 
 class Server:
-    """A Jupyter server in a folder of its own with the released notebooks in it."""
+    """A Jupyter server in a folder of its own with the released notebooks in it.
 
-    def __init__(self, folder):
+    application: the module that is run, "jupyterlab" or "notebook"
+    """
+
+    def __init__(self, folder, application="jupyterlab"):
         self.folder, self.token = folder, secrets.token_hex(8)
         with socket.socket() as free:
             free.bind(("127.0.0.1", 0))
@@ -29,7 +32,7 @@ class Server:
         (settings / "notification.jupyterlab-settings").write_text('{"fetchNews": "false", "checkForUpdates": false}')
         self.log = (folder / "jupyter.log").open("w")
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "jupyterlab", "--no-browser", "--allow-root", "--ip=127.0.0.1", f"--port={port}",
+            [sys.executable, "-m", application, "--no-browser", "--allow-root", "--ip=127.0.0.1", f"--port={port}",
              "--ServerApp.base_url=/user/x/", f"--IdentityProvider.token={self.token}", f"--ServerApp.root_dir={folder}",
              "--LabApp.expose_app_in_browser=True", "--JupyterNotebookApp.expose_app_in_browser=True"],
             stdout=self.log, stderr=self.log, stdin=subprocess.DEVNULL, env=os.environ | home,

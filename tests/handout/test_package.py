@@ -152,11 +152,11 @@ def test_what_gradescope_asks_of_its_zip(course, tmp_path):
 class Gradescope:
     """/autograder of one container, in another place.
 
-    python: what setup.sh would have installed; path: the commands of the container
+    python: what setup.sh would have installed; path: the commands of the container; enter: the command that enters it
     """
 
-    def __init__(self, course, folder, python, path):
-        self.folder, self.python, self.path = folder, python, path
+    def __init__(self, course, folder, python, path, enter=()):
+        self.folder, self.python, self.path, self.enter = folder, python, path, enter
         package.write(folder / "autograder.zip", package.for_gradescope(course))
         subprocess.run(["unzip", "-q", folder / "autograder.zip", "-d", folder / "source"], check=True)
         (folder / "autograder.zip").unlink()
@@ -185,7 +185,7 @@ class Gradescope:
             options |= {"user": user, "group": user, "extra_groups": []}
             for path in (self.folder, self.folder / "results"):
                 os.chown(path, user, user)
-        ran = subprocess.run([self.folder / "run_autograder"], **options)
+        ran = subprocess.run([*self.enter, self.folder / "run_autograder"], **options)
         assert ran.returncode == 0
         self.said = ran.stdout + ran.stderr
         results = json.loads((self.folder / "results" / "results.json").read_text())
@@ -198,14 +198,21 @@ def solutions(released):
     return {path.name: path.read_bytes() for path in released.source.glob("*.ipynb")}
 
 
-@pytest.fixture(scope="module", params=[pytest.param(way, marks=pytest.mark.sandbox) for way in ("bubblewrap", "user")])
+WAYS = ("bubblewrap", "user", "container")
+
+
+@pytest.fixture(scope="module", params=[pytest.param(way, marks=pytest.mark.sandbox) for way in WAYS])
 def gradescope(request, released, tmp_path_factory):
-    """Once where bubblewrap works, once where there is none and the grader is root."""
+    """Once where bubblewrap works; twice where the grader is root and there is none, or a container lets it do nothing."""
     folder, path = tmp_path_factory.mktemp("autograder"), os.environ["PATH"]
     if request.param == "bubblewrap":
         request.getfixturevalue("sandboxed")
         return Gradescope(released, folder, sys.executable, path)
-    return Gradescope(released, folder, request.getfixturevalue("open_python"), without_bubblewrap(folder))
+    python = request.getfixturevalue("open_python")
+    if request.param == "user":
+        return Gradescope(released, folder, python, without_bubblewrap(folder))
+    enter = [*request.getfixturevalue("container"), "/", "env", "--chdir", folder]
+    return Gradescope(released, folder, python, path, enter)
 
 
 def without_bubblewrap(folder):
