@@ -122,7 +122,7 @@ class Machine:
     def __init__(self, folder, names, released):
         self.folder, self.names = folder, names
         self.environment, self.exchange = folder / "env", folder / "srv/exchange"
-        self.instructors = folder / "instructors"
+        self.instructors, self.course_id = folder / "instructors", "transforms"
         self.home = {who: Path(pwd.getpwnam(name).pw_dir) for who, name in names.items()}
         self.course = Course(shutil.copytree(released.root, self.home["instructor"] / "course"))
         subprocess.run(["chown", "-R", f"{names['instructor']}:", self.course.root], check=True)
