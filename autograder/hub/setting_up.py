@@ -9,6 +9,7 @@ import shlex
 import stat
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 from ..bridge.nbgrader_api import exchange
@@ -34,7 +35,7 @@ class Hub:
     instructors: Path
     exchange: Path
 
-    @property
+    @cached_property
     def course_id(self) -> str:
         return exchange(self.course)[1]
 
@@ -202,6 +203,7 @@ def problems(hub: Hub) -> Iterator[str]:
         yield f"{hub.environment} has no jupyterhub-singleuser: `{python} -m pip install jupyterhub==…`, in the hub's version."
     for folder, whose, passing in (
         (hub.environment, "everybody", stat.S_IXOTH),
+        (python.resolve(), "everybody", stat.S_IXOTH),  # what the environment was made from
         (hub.exchange, "everybody", stat.S_IXOTH),
         (hub.instructors, "instructors", stat.S_IXOTH | stat.S_IXGRP),
     ):
