@@ -27,8 +27,6 @@ class Person:
         self.page.fill("#password_input", "any")
         self.page.click("#login_submit")
         self.lab()
-        if self.page.get_by_text("Would you like to get notified").count():
-            self.page.get_by_role("button", name="No", exact=True).click()
 
     def lab(self):
         """Lab with nothing open in it."""

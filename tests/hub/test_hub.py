@@ -10,7 +10,7 @@ import nbformat
 import pytest
 from hub.machine import Machine, accounts, as_account, make_environment
 from hub.people import Person
-from support import ASKED, lacking, points, points_by_hand, scores
+from support import ASKED, lacking, points, points_by_hand, scores, wait_for
 
 from autograder.course import ASSIGNMENT
 from autograder.demo import STUDENTS, Student
@@ -107,6 +107,10 @@ def work_in_the_browser(student, pictures):
     assert len(figures) >= 2
     for figure in figures:
         assert notebook.scene(figure).evaluate("() => Object.keys(viewer.scene_tree.children).length")
+    scene = notebook.scene_with("input[name=degrees]")
+    before = scene.locator("#text").inner_text()
+    scene.locator("input[name=degrees]").press("End")  # the kernel answers
+    wait_for(lambda: scene.locator("#text").inner_text() != before)
     notebook.page.screenshot(path=pictures / "scene.png")
     notebook.page.evaluate("() => window.jupyterapp.commands.execute('docmanager:save')")
     saved = (student.home / ASSIGNMENT / f"{ONE}.ipynb").read_text()
@@ -136,7 +140,7 @@ def grade_by_clicks(instructor, student, given, pictures):
     page = instructor.lab()
     instructor.open("Formgrader")
     grader = page.frame_locator("iframe")
-    grader.get_by_text("Manage Assignments").first.wait_for()
+    grader.locator("td a", has_text=ASSIGNMENT).first.wait_for()
     page.screenshot(path=pictures / "formgrader.png")
     grader.get_by_role("link", name="Manual Grading").click()
     for name in (ASSIGNMENT, TWO):
@@ -146,6 +150,7 @@ def grade_by_clicks(instructor, student, given, pictures):
         with page.expect_response(lambda answer: "/api/grade/" in answer.url and answer.request.method == "PUT"):
             grader.locator(f"input#{cell}").fill(f"{score:g}")
             grader.locator(f"input#{cell}").blur()
+    grader.locator(f"input#{QUESTION}").scroll_into_view_if_needed()
     page.screenshot(path=pictures / "grading.png")
 
 
