@@ -128,7 +128,31 @@ def _parser():
     sub.add_argument(
         "--seeds", type=_positive, default=30, help="draw the cases from so many seeds (default: 30; the tests: 51)"
     )
-    add("doctor", "say what protects grading on this machine, and what does not")
+
+    def hub_options(sub, required):
+        sub.add_argument(
+            "--environment", type=Path, required=required, metavar="FOLDER", help="in which students' servers run"
+        )
+        sub.add_argument(
+            "--instructor-config",
+            type=Path,
+            required=required,
+            metavar="FOLDER",
+            help="for the settings that instructors have besides",
+        )
+        sub.add_argument(
+            "--exchange",
+            type=Path,
+            default=Path("/srv/nbgrader/exchange"),
+            metavar="FOLDER",
+            help="which all servers share (default: /srv/nbgrader/exchange)",
+        )
+
+    sub = add("hub", "set this course up on a JupyterHub, as its administrator, and say what the hub has to be told")
+    hub_options(sub, required=True)
+    sub = add("doctor", "say what protects grading on this machine, and what does not")
+    sub.add_argument("--hub", action="store_true", help="and what of a JupyterHub is not as `hub` leaves it")
+    hub_options(sub, required=False)
     sub = add("package", "make zips: the notebooks for a learning management system, the grader for Gradescope")
     sub.add_argument(
         "--output",

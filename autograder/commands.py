@@ -467,10 +467,37 @@ def check(options):
     return 0 if found and earned == most and not refused else 1
 
 
-def doctor(options):
-    from .doctor import examine
+def hub(options):
+    from .hub import setting_up
 
-    lines = examine(course())
+    on = _hub(options)
+    changed = [step for step in setting_up.steps(on) if step.take]
+    for step in changed:
+        step.take()
+        console.print(f"done  {step.what}.", markup=False)
+    if not changed:
+        console.print("Nothing had to be changed.")
+    looks = list(setting_up.problems(on))
+    for line in looks:
+        console.print(f"LOOK  {line}", markup=False)
+    console.print(
+        f"Into jupyterhub_config.py, whose hub is started anew then:\n\n{setting_up.for_the_spawner(on)}", markup=False
+    )
+    return 1 if looks else 0
+
+
+def _hub(options):
+    from .hub.setting_up import hub
+
+    return hub(course(), options.environment, options.instructor_config, options.exchange)
+
+
+def doctor(options):
+    from .doctor import examine, examine_hub
+
+    if options.hub and not (options.environment and options.instructor_config):
+        raise CourseError("`doctor --hub` has to be told --environment and --instructor-config, as `hub` was.")
+    lines = examine(course()) + (examine_hub(_hub(options)) if options.hub else [])
     for good, line in lines:
         console.print(f"{'ok  ' if good else 'LOOK'}  {line}", markup=False)
     return 0 if all(good for good, _ in lines) else 1
@@ -503,5 +530,5 @@ def test(options):
     return subprocess.call([sys.executable, "-m", "pytest", *tier, *(options.extra or spread)])
 
 
-_ALL = demo, lab, release, collect, grade, report, extend, term, check, prove, doctor, package, export, test
+_ALL = demo, lab, release, collect, grade, report, extend, term, check, prove, hub, doctor, package, export, test
 COMMANDS = {command.__name__: command for command in _ALL}

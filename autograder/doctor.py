@@ -7,6 +7,7 @@ from pathlib import Path
 
 from . import sandbox
 from .bridge.nbgrader_api import exchange
+from .hub import setting_up
 from .intake.exchange import not_sticky
 from .sandbox import Limits
 from .sandbox.bounds import FOLDER
@@ -51,6 +52,18 @@ def examine(course):
         (released, f"notebooks/ is {'there' if released else 'missing: run `python3 -m autograder release`'}.")
     )
     return lines + _files(course)
+
+
+def examine_hub(hub):
+    """The same of a JupyterHub."""
+    lines = [
+        (
+            step.take is None,
+            step.what + (f": `python3 -m autograder hub {hub.command}` sees to that." if step.take else "."),
+        )
+        for step in setting_up.steps(hub)
+    ]
+    return lines + [(False, line) for line in setting_up.problems(hub)]
 
 
 def _files(course):

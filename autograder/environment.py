@@ -22,17 +22,18 @@ def suits(root):
     return True
 
 
-def lacking(requirements):
-    """The requirements that this interpreter does not have at their version."""
-    there = installed()
+def lacking(requirements, there=None):
+    """The requirements that are not `there`, {name: version}, at their version; by default, in this interpreter."""
+    there = installed() if there is None else there
     wanted = pins(requirements.read_text(encoding="utf-8"))
     return [name for name, version in wanted if there.get(normal(name)) != version]
 
 
-def installed():
-    """{name: version} of the packages that Python finds, by the names of the folders that say so: reading these takes longer."""
+def installed(folders=None):
+    """{name: version} of the packages that Python finds, or that lie in these folders, by the names of the folders that say so:
+    reading these takes longer."""
     found = {}
-    for folder in sys.path:
+    for folder in sys.path if folders is None else folders:
         with suppress(OSError):
             for entry in os.listdir(folder or "."):
                 if match := re.fullmatch(r"([^-]+)-([^-]+)(?:-.*)?\.(?:dist|egg)-info", entry):

@@ -383,6 +383,7 @@ def test_help_names_every_command_of_the_readme(course):
         "check",
         "collect",
         "doctor",
+        "hub",
         "package",
         "export",
         "test",

@@ -28,7 +28,7 @@ ROOMS = {
         "proving intake",
         "grading",
         "bridge",
-        "pages collecting",
+        "pages collecting hub",
         "handout demo doctor",
         "commands",
         "command_line",

@@ -14,11 +14,13 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from nbgrader.exchange.default import ExchangeCollect, ExchangeReleaseAssignment, ExchangeReleaseFeedback
-from nbgrader.utils import parse_utc
+from nbgrader.utils import notebook_hash, parse_utc
 
+from ..files import replace
 from ..names import odd
 from .submission import AHEAD, SECRET, TIMESTAMP, read, receipts
 
+SUMMARY = "index"  # the page about all notebooks, as pages/feedback.py calls it
 SUBMITTING = timedelta(hours=1)  # the longest that `nbgrader submit` may take to copy, and more
 
 
@@ -139,24 +141,37 @@ def _account(uid):
 
 
 class ReleaseFeedback(ExchangeReleaseFeedback):
-    """`nbgrader release_feedback`: it passes over whose work did not come through the exchange, and names who has no pages."""
+    """`nbgrader release_feedback`, which passes over those whose work did not come through the exchange, and names who has no pages.
+
+    Whoever is to fetch a page can read it, whatever the instructor's umask. nbgrader shows a student no feedback at all while
+    one of the notebooks that were handed in has none: for those that are not the assignment's, that is the summary.
+    """
 
     def copy_files(self):
-        made = sorted(glob.glob(self.src_path))
-        graded = self.coursedir.format_path(
-            self.coursedir.autograded_directory, self.coursedir.student_id, self.coursedir.assignment_id
-        )
-        for student in sorted(
-            {Path(path).parent.name for path in glob.glob(graded)} - {Path(path).parent.name for path in made}
-        ):
-            self.log.warning(
-                "%s: not released; there are no pages. `python3 -m autograder grade` makes them, or says why not.",
-                student,
-            )
-        for folder in made:
-            known_by, _ = receipts(Path(folder))
+        folders = [Path(folder) for folder in sorted(glob.glob(self.src_path))]
+        of = self.coursedir
+        graded = glob.glob(of.format_path(of.autograded_directory, of.student_id, of.assignment_id))
+        for student in sorted({Path(path).parent.name for path in graded} - {folder.parent.name for folder in folders}):
+            self.log.warning("%s: not released; there are no pages. `python3 -m autograder grade` says why.", student)
+        for folder in folders:
+            known_by, _ = receipts(folder)
             if {SECRET, TIMESTAMP} <= known_by.keys():
-                self.src_path = glob.escape(folder)
+                self.src_path = glob.escape(str(folder))
                 super().copy_files()
+                self._finish(folder, (folder / SECRET).read_text())
             else:
                 self.log.warning("%s: not released; the submission did not come through the exchange.", folder)
+
+    def _finish(self, folder, secret):
+        """Let everybody read the pages, whose names nobody else can guess, and add those of other notebooks."""
+        pages, whose = {page.stem: page for page in folder.glob("*.html")}, folder.parent.name
+        handed_in = self.coursedir.format_path(self.coursedir.submitted_directory, whose, self.coursedir.assignment_id)
+        others = [path.stem for path in Path(handed_in).glob("*.ipynb") if path.stem not in pages]
+        for name in others if SUMMARY in pages else ():
+            replace(self._page(secret, name), pages[SUMMARY].read_bytes())
+            pages[name] = pages[SUMMARY]
+        for name in pages:
+            self._page(secret, name).chmod(0o644)
+
+    def _page(self, secret, name):
+        return Path(self.dest_path, notebook_hash(secret=secret, notebook_id=name) + ".html")

@@ -182,6 +182,27 @@ def test_from_release_to_feedback_and_once_more(hub, sandboxed):
         assert not given & solutions, path
 
 
+def test_feedback_is_fetched_whatever_else_was_handed_in_and_by_whoever_graded(hub, sandboxed):
+    """With a notebook of the student's own beside the assignment's, and an instructor whose files nobody else can read."""
+    course, bob = hub.course, hub.home("bob")
+    hub.student("bob", "fetch_assignment", ASSIGNMENT)
+    nbformat.write(nbformat.v4.new_notebook(), bob / ASSIGNMENT / "Untitled.ipynb")
+    hub.student("bob", "submit", ASSIGNMENT)
+    hub.instructor("collect", ASSIGNMENT)
+    code, said = run(course, "grade")
+    assert code == 0, said
+    for page in course.feedback("bob").glob("*.html"):
+        page.chmod(0o600)
+    hub.instructor("release_feedback", ASSIGNMENT)
+    released = list((hub.exchange / "transforms" / "feedback").iterdir())
+    assert released and all(stat.S_IMODE(page.stat().st_mode) == 0o644 for page in released)
+    assert "feedback ready to be fetched" in hub.student("bob", "list", "--inbound")
+    hub.student("bob", "fetch_feedback", ASSIGNMENT)
+    assert "feedback already fetched" in hub.student("bob", "list", "--cached")
+    own = next(page for path, page in hub.pages("bob").items() if path.endswith("/Untitled.html"))
+    assert own == (course.feedback("bob") / "index.html").read_text()
+
+
 def test_links_in_the_exchange_bring_nothing_of_the_instructors_and_stop_nobody(hub, solved):
     course, sent = hub.course, EARLY
     inbound = hub.exchange / "transforms" / "inbound"

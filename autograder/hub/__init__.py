@@ -1,0 +1,1 @@
+"""The course on a JupyterHub: what `hub` writes, and what `doctor --hub` finds of it."""
