@@ -172,20 +172,15 @@ def _folders(hub):
         hub.exchange.chmod(0o1777)
 
     def give():
-        if course.exists():
-            raise CourseError(
-                f"{course} belongs to another account than the course does, and only its owner can release: have it removed "
-                f"when nothing has been handed in yet, or `chown -R {owner.st_uid}:{owner.st_gid} {course}`."
-            )
-        course.mkdir()
-        course.chmod(0o755)
-        if course.stat().st_uid != owner.st_uid:
+        if not course.exists():
+            course.mkdir()
             os.chown(course, owner.st_uid, owner.st_gid)
+        course.chmod(0o755)
 
     shared = hub.exchange.is_dir() and hub.exchange.stat().st_mode & 0o1777 == 0o1777
     yield Step(f"{hub.exchange}: the exchange, mode 1777", None if shared else share)
-    given = course.is_dir() and course.stat().st_uid == owner.st_uid
-    yield Step(f"{course}: made before a student could, and yours", None if given else give)
+    given = course.is_dir() and course.stat().st_mode & 0o007 == 0o005
+    yield Step(f"{course}: the course's folder in it, made before a student could", None if given else give)
 
 
 def problems(hub: Hub) -> Iterator[str]:
@@ -201,6 +196,12 @@ def problems(hub: Hub) -> Iterator[str]:
         )
     if not (hub.environment / "bin/jupyterhub-singleuser").exists():
         yield f"{hub.environment} has no jupyterhub-singleuser: `{python} -m pip install jupyterhub==…`, in the hub's version."
+    room, owner = hub.exchange / hub.course_id, hub.course.root.stat()
+    if room.exists() and room.stat().st_uid != owner.st_uid:
+        yield (
+            f"{room} belongs to another account than the course, and nbgrader lets only its owner release: while nobody has "
+            f"handed in, `chown -R {owner.st_uid}:{owner.st_gid} {room}`; otherwise give the course to that account."
+        )
     for folder, whose, passing in (
         (hub.environment, "everybody", stat.S_IXOTH),
         (python.resolve(), "everybody", stat.S_IXOTH),  # what the environment was made from

@@ -111,21 +111,29 @@ def _changed(text):
 @pytest.mark.parametrize("how", BREAKING)
 def test_what_somebody_has_changed_is_told_and_mended(hub, number, how):
     set_up(hub)
-    path = hub.exchange if number == 6 else hub.exchange / "transforms" if number == 7 else None
-    path = (
-        path
-        or [path for root in (hub.environment / "etc", hub.instructors) for path in sorted(root.rglob("*.*"))][number]
-    )
+    folders = hub.exchange, hub.exchange / "transforms"
+    files = [path for root in (hub.environment / "etc", hub.instructors) for path in sorted(root.rglob("*.*"))]
+    path = [*files, *folders][number]
     before = contents(path.parent)
     BREAKING[how](path)
-    broken = contents(path.parent) != before
-    told = [line for good, line in examine_hub(hub) if not good and line.startswith(f"{path}: ")]
-    if how == "remove" or number < 7 and broken:
-        (line,) = told
-        assert f"`python3 -m autograder hub {hub.command}` sees to that." in line
-        set_up(hub)
-        assert contents(path.parent).keys() == before.keys() and path.stat().st_mode == before[path][0]
-    assert not [line for good, line in examine_hub(hub) if not good and line.startswith(f"{path}: ")]
+
+    def told():
+        return [line for good, line in examine_hub(hub) if not good and line.startswith(f"{path}: ")]
+
+    (line,) = told()
+    assert f"`python3 -m autograder hub {hub.command}` sees to that." in line
+    set_up(hub)
+    assert not told() and contents(path.parent).keys() == before.keys() and path.stat().st_mode == before[path][0]
+
+
+def test_a_course_that_somebody_else_has_in_the_exchange_is_told(hub):
+    if os.getuid() != 0:
+        pytest.skip("needs root, to give a folder away")
+    set_up(hub)
+    os.chown(hub.exchange / "transforms", 65534, -1)
+    assert "nbgrader lets only its owner release: while nobody has handed in, `chown -R 0:0 " in "\n".join(
+        problems(hub)
+    )
 
 
 def test_other_settings_stay(hub):
