@@ -141,7 +141,7 @@ def _account(uid):
 
 
 class ReleaseFeedback(ExchangeReleaseFeedback):
-    """`nbgrader release_feedback`, which passes over those whose work did not come through the exchange, and names who has no pages.
+    """`nbgrader release_feedback`: it passes over whose work did not come through the exchange, and names who has no pages.
 
     Whoever is to fetch a page can read it, whatever the instructor's umask. nbgrader shows a student no feedback at all while
     one of the notebooks that were handed in has none: for those that are not the assignment's, that is the summary.
