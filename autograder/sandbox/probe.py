@@ -19,8 +19,9 @@ NO_SECCOMP = (
     "libseccomp2; on Fedora: sudo dnf install libseccomp."
 )
 REFUSED = (
-    "bubblewrap is installed but may not make namespaces here ({reason}). In a container, allow unprivileged user "
-    "namespaces (for Docker: --security-opt seccomp=unconfined, or run the grader outside the container)."
+    "bubblewrap is installed but may not make namespaces here ({reason}). In a container, grade as an ordinary user who may "
+    "make them (for Docker: --user 1000 --security-opt seccomp=unconfined --security-opt systempaths=unconfined, and "
+    "--security-opt apparmor=unconfined on a machine with AppArmor), or run the grader outside the container."
 )
 
 RESTRICTED = (
