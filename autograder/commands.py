@@ -35,8 +35,8 @@ The course is called {{name}} now (nbgrader_config.py). What is left to do:
   1. Change what you want in source/, then `python3 -m autograder release`.
   2. The class: `nbgrader db student import FILE.csv` (columns id,first_name,last_name,email,lms_user_id, or some of them).
   3. The due date: `nbgrader db assignment add {ASSIGNMENT} --duedate "2027-01-31 18:00 UTC"`.
-  4. On a hub: c.CourseDirectory.course_id = "{{name}}" in the students' configuration, too; then
-     `nbgrader release_assignment {ASSIGNMENT}`.
+  4. On a hub: its administrator runs `python3 -m autograder hub …` once more, with the options of the first time, which tells
+     students' servers the name; then `nbgrader release_assignment {ASSIGNMENT}`.
 """
 
 
