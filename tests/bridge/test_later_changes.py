@@ -155,7 +155,7 @@ def test_points_that_a_person_gives_are_the_same_everywhere_and_are_told(handed_
     told = {(row["student"], row["exercise"]): row["by_hand"] for row in verdicts(handed_in)}
     assert [of for of, by_hand in told.items() if by_hand] == [("alice", "chain")]
     assert {who: row["by_hand"] for who, row in exported(handed_in).items()} == {"alice": "chain", "bob": ""}
-    assert f"alice,{less:g},{points() + points_by_hand():g},yes" in run(handed_in, "export")[1]
+    assert f"alice,{less},{points() + points_by_hand()},yes" in run(handed_in, "export")[1]
     assert "chain 0.5 of 2 (points by hand)" in run(handed_in, "export", "--format", "moodle")[1]
     page = (handed_in.reports / "index.html").read_text()
     assert "Points given by hand in the grader's place: 1 student" in page

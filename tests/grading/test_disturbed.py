@@ -78,7 +78,7 @@ def full_disk(course):
     size = sum(path.stat().st_size for path in course.root.rglob("*") if path.is_file())
     script = (
         f"cp -r {course.root}/. /mnt/ && cd /mnt && dd if=/dev/zero of=/mnt/filling bs=1k 2>/dev/null\n"
-        f"truncate -s -20k /mnt/filling\n{' '.join(grade('--force'))}; code=$?\n"
+        f"truncate -s -4k /mnt/filling\n{' '.join(grade('--force'))}; code=$?\n"
         f"rm /mnt/filling; rm -r {course.root}/*; cp -r /mnt/. {course.root}/; exit $code"
     )
     bwrap = ["bwrap", "--dev-bind", "/", "/", "--size", str(size + 4_000_000), "--tmpfs", "/mnt", "sh", "-c", script]

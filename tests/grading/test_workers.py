@@ -7,7 +7,7 @@ from functools import partial
 import pytest
 from nbgrader.api import InvalidEntry
 from sqlalchemy.exc import OperationalError
-from support import ASKED, points, run, scores, statuses
+from support import ASKED, points, run, scores, statuses, wait_for
 
 from autograder.bridge.gradebook import Writer
 from autograder.grading import classroom, workers
@@ -88,10 +88,7 @@ def begun(folder, item):
 
 def test_a_worker_has_its_next_while_what_came_of_the_last_is_recorded(tmp_path):
     for item, _ in Processes(partial(begun, tmp_path), 1).each([1, 2, 3]):
-        until = time.monotonic() + 20
-        while item < 3 and not (tmp_path / str(item + 1)).exists():
-            assert time.monotonic() < until, "the worker waits for whoever records"
-            time.sleep(0.01)
+        wait_for(lambda item=item: item == 3 or (tmp_path / str(item + 1)).exists())
 
 
 def test_no_worker_is_left(done):

@@ -3,6 +3,7 @@
 import csv
 import io
 import random
+from datetime import datetime
 
 import pytest
 from nbgrader.api import Grade, SubmittedAssignment, SubmittedNotebook
@@ -116,11 +117,24 @@ def test_the_feedback_for_moodle_names_what_was_found(course, hand_in, solved, s
     assert "chain 2 of 2; transform_pose 2 of 2; invert_transform 0 of 2 (missing)" in feedback
 
 
+LATE = """
+from nbgrader.plugins import LateSubmissionPlugin
+
+class HalfAPointADay(LateSubmissionPlugin):
+    def late_submission_penalty(self, student_id, score, total_seconds_late):
+        return total_seconds_late / 86_400 / 2
+
+c.AssignLatePenalties.plugin_class = HalfAPointADay
+"""
+
+
 def test_late_work_is_exported_with_its_penalty(graded):
     with Writer(graded) as writer:
-        for notebook in writer.gradebook.find_submission("transforms", "ada").notebooks:
-            notebook.late_submission_penalty = 0.2
+        submission = writer.gradebook.find_submission("transforms", "ada")
+        submission.assignment.duedate, submission.timestamp = datetime(2026, 11, 1), datetime(2026, 11, 3)
         writer.gradebook.db.commit()
+    with open(graded.root / "nbgrader_config.py", "a", encoding="utf-8") as file:
+        file.write(LATE)
     assert {row[0]: row[1] for row in table(graded, "plain")[1:]}["ada"] == "0.5"
     assert {row[3]: row[5] for row in table(graded, "canvas")[2:]}["ada"] == "0.5"
 

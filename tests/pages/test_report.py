@@ -252,6 +252,7 @@ def test_an_exercise_tells_as_well_as_it_goes_with_the_others():
     works = class_of(
         like_the_rest=strong_first,
         the_rest=strong_first,
+        and_more=strong_first,
         reversed=strong_first[::-1],
         easy=[2.0] * 12,
         odd=[2.0, 0.0] * 6,

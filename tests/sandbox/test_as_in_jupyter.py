@@ -107,7 +107,7 @@ FRAME = r"(?:Cell|File) |\w+(?:Error|Exception)\b"  # how a frame of a traceback
 NOISE = [
     (r"\x1b\[[\d;]*m", ""),  # the sandbox leaves out a traceback's colours,
     (rf"\n+(?={FRAME})", "\n"),  # and then IPython some empty lines
-    (r"\b0x[\da-f]+|\b7f[\da-f]{10}\b", "ADDRESS"),
+    (r"\b0x[\da-f]+|\b7[\da-f]{11}\b", "ADDRESS"),
     (r"\b[\da-f]{32}\b", "ID"),
     (r"(/tmp/ipykernel_\d+/)?\b\d+\.py\b", "CELL.py"),
     (r"\b(Thread|Task)-\d+", r"\1-N"),
