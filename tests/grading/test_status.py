@@ -76,7 +76,7 @@ def graded(released, tmp_path_factory, added):
         patch.setattr(classroom, "Processes", Here)
         patch.setattr(commands, "console", Console(file=printed, width=1000, highlight=False, soft_wrap=True))
         failed = commands._grade(course, list(STATUSES), protected=False, jobs=1, with_feedback=False)
-    assert failed == []
+    assert not failed
     return course, printed.getvalue()
 
 
@@ -134,7 +134,7 @@ def test_every_status_is_counted_once_and_said_in_exports(status, added):
     row = Row(NOTEBOOK, EXERCISE, 0.0, 2.0, status)
     ((result,),) = results({"ann": Work([row])}).values()
     assert sum((result.right, result.named, result.unnamed, result.failed, result.undone)) == 1
-    assert export._said(row) == f"{EXERCISE} 0 of 2{'' if status == 'graded' else f' ({status})'}"
+    assert export._said(row, row.remark) == f"{EXERCISE} 0 of 2{'' if status == 'graded' else f' ({status})'}"
 
 
 def test_records_without_words_say_what_the_status_means(added, monkeypatch):
