@@ -103,6 +103,19 @@ def test_what_has_no_plain_form_is_named(value, name):
     assert isinstance(result, Other) and result.type_name == name
 
 
+@pytest.mark.parametrize("shape", [(), (1,), (3,), (3, 3)])
+@pytest.mark.parametrize("kind", [bool, int, float])
+def test_what_only_claims_to_be_an_array_is_refused_at_once(shape, kind):
+    class Claims:
+        __class__ = property(lambda self: np.ndarray)
+        ndim, size, dtype = len(shape), math.prod(shape), np.dtype(kind)
+
+    Claims.shape = shape
+    for value in (Claims(), [Claims()], (1.0, Claims())):
+        with pytest.raises(TypeError, match="Claims claims to be an array of numbers, and is none"):
+            encode(value)
+
+
 def test_lists_in_lists_end_somewhere():
     endless = []
     endless.append(endless)

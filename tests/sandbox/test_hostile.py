@@ -282,7 +282,7 @@ LIES = [
             __len__ = lambda self: 3
         """,
         "Lie()",
-        status="error|killed",  # what takes it for an array may end its own process, as memory happens to lie
+        status="error",
     ),
     answers(
         "an array that lies",

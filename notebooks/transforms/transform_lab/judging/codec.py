@@ -211,9 +211,12 @@ def _array(value):
         value = np.asarray(found)
     if value.dtype.kind not in "biuf":
         return {"other": f"array of {value.dtype}"[:LONGEST_TEXT]}
+    numbers = np.asarray(value)
+    if numbers.dtype.kind not in "biuf":  # an array of itself, for ever
+        raise TypeError(f"{type(value).__name__} claims to be an array of numbers, and is none")
     if value.ndim == 0:
-        return encode(np.asarray(value).item())  # a length of astropy's is its own item, for ever
-    numbers = np.asarray(value).ravel()
+        return encode(numbers.item())  # a length of astropy's is its own item, for ever
+    numbers = numbers.ravel()
     if numbers.dtype.kind in "iu" and np.any(np.abs(numbers.astype(np.float64)) > LARGEST_INTEGER):
         return {"other": "array of integers out of range"}
     flat = numbers.tolist()
