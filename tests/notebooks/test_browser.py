@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from jupyter_lab import Opened, Server, drawn
 from PIL import Image
-from support import PATIENCE, ROOT, wait_for
+from support import ROOT, wait_for
 from transform_lab import tft
 from transform_lab.animations import between
 
@@ -33,21 +33,6 @@ def server(tmp_path_factory):
     running = Server(tmp_path_factory.mktemp("jupyter") / "work")
     yield running
     running.stop()
-
-
-@pytest.fixture
-def page(browser):
-    """A page in which nothing of ours may complain: an error on the console is an error of the test."""
-    context = browser.new_context(viewport={"width": 1100, "height": 900})
-    context.set_default_timeout(1000 * PATIENCE)
-    found, opened = [], context.new_page()
-    opened.on("pageerror", lambda error: found.append((str(error), re.search(r"at .*|$", error.stack or "")[0])))
-    opened.on("console", lambda said: said.type == "error" and found.append((said.text, said.location["url"])))
-    yield opened
-    context.close()
-    # Jupyter's own scripts and addresses, and what a page from disk fetches for its formulas
-    others = re.compile(r"/user/x/(static|api|lab|files)/|favicon|net::ERR_|ResizeObserver loop")
-    assert [(text, where) for text, where in found if not others.search(text + where)] == []
 
 
 def frame_in(scene, name):

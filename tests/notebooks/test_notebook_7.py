@@ -3,7 +3,7 @@
 import nbformat
 import pytest
 from jupyter_lab import Opened, Server
-from support import ASKED, PATIENCE
+from support import ASKED
 
 CELLS = "() => [...window.jupyterapp.shell.currentWidget.content.model.cells].map(cell => cell.sharedModel.toJSON())"
 
@@ -13,14 +13,6 @@ def server(tmp_path_factory):
     running = Server(tmp_path_factory.mktemp("notebook") / "work", "notebook")
     yield running
     running.stop()
-
-
-@pytest.fixture
-def page(browser):
-    context = browser.new_context(viewport={"width": 1100, "height": 900})
-    context.set_default_timeout(1000 * PATIENCE)
-    yield context.new_page()
-    context.close()
 
 
 @pytest.mark.parametrize("name", ASKED)
