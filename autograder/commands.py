@@ -27,7 +27,7 @@ UNPROTECTED = (
 
 OPEN_TO_THE_NETWORK = (
     "[bold red]NOT PROTECTED:[/] whoever in the network reaches {} can run any code there as you, and read the course. Set up "
-    "TLS (docs/larger_classes.md), or start scheduler and workers with `--host 127.0.0.1` on this machine alone."
+    "TLS (autograder/docs/larger_classes.md), or start scheduler and workers with `--host 127.0.0.1` on this machine alone."
 )
 
 NEW_TERM = f"""\

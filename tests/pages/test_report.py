@@ -353,7 +353,7 @@ def test_grades_csv_is_what_nbgrader_exports(course, nbgrader):
         for number, student in enumerate(course.students()):
             names = {"last_name": "ABC"[-number % 3], "first_name": f"{-number % 10}"}
             writer.gradebook.update_or_create_student(student, **names)
-        writer.export(course.reports / "grades.csv")
+        writer.export(course.reports / "grades.csv", writer.grades())
     ours = (course.reports / "grades.csv").read_text()
     result = nbgrader(course, "export")
     assert result.returncode == 0, result.stderr
@@ -372,7 +372,7 @@ def test_nothing_in_grades_csv_is_run_and_every_name_stays_in_its_cell(course):
     student = course.students()[0]
     with Writer(course) as writer:
         writer.gradebook.update_or_create_student(student, **nasty)
-        writer.export(course.reports / "grades.csv")
+        writer.export(course.reports / "grades.csv", writer.grades())
     with open(course.reports / "grades.csv", newline="", encoding="utf-8") as file:
         rows = {row["student_id"]: row for row in csv.DictReader(file)}
     assert rows.keys() == set(course.students())
