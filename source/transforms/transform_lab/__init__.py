@@ -10,13 +10,23 @@ On a robot, change the import lines and the rest of your code runs as it is:
 """
 
 from . import rospy, tft, visualization_msgs
-from .animations import animate_approach, animate_chain, animate_inverse, animate_rotation
+from .animations import (
+    animate_approach,
+    animate_chain,
+    animate_determinant,
+    animate_inverse,
+    animate_journey,
+    animate_mirrors,
+    animate_retelling,
+    animate_rotation,
+)
 from .check import check, once_done, say_what_is_missing
 from .lab_markers import arrow_marker, axis_marker
 from .messages import ColorRGBA, Header, Marker, Point, Pose, PoseStamped, Quaternion, Vector3
 from .mistakes import show_mistake
 from .outdated import follow
 from .plots import plot_columns, plot_from_above, plot_quaternion
+from .predictions import predict
 from .summary import sum_up
 from .viewing.viewer import Viewer
 
@@ -32,7 +42,11 @@ __all__ = [
     "Viewer",
     "animate_approach",
     "animate_chain",
+    "animate_determinant",
     "animate_inverse",
+    "animate_journey",
+    "animate_mirrors",
+    "animate_retelling",
     "animate_rotation",
     "arrow_marker",
     "axis_marker",
@@ -41,6 +55,7 @@ __all__ = [
     "plot_columns",
     "plot_from_above",
     "plot_quaternion",
+    "predict",
     "rospy",
     "show_mistake",
     "sum_up",

@@ -261,6 +261,23 @@ class Scene:
         source = scene.in_root(scene._known(source_frame, "lookup: the source frame"))
         return tft.inverse_matrix(target) @ source
 
+    def path(self, target_frame, source_frame):
+        """Return the names of the frames on the way in the tree from `target_frame` to `source_frame`, both among them.
+
+        It leads down from the target to their common ancestor, and up to the source, as TF's look-ups do.
+        Raises ValueError for a frame that is not known.
+        """
+        scene = self.state()
+        ways = []
+        for name, what in ((target_frame, "path: the target frame"), (source_frame, "path: the source frame")):
+            way = [scene._known(name, what)]
+            while way[-1] != scene.root:
+                way.append(scene.frames[way[-1]].parent)
+            ways.append(way)
+        down, up = ways
+        meeting = next(name for name in down if name in up)
+        return [*down[: down.index(meeting)], *reversed(up[: up.index(meeting) + 1])]
+
     def in_root(self, name):
         """Return the 4x4 transform of a known frame in the root frame."""
         root_T_frame = np.eye(4)
