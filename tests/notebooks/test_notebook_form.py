@@ -59,6 +59,20 @@ def test_an_idea_is_seen_said_predicted_done_and_checked(path, title):
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=NAMES)
+def test_a_prediction_can_be_answered_before_it_is_unfolded(path):
+    """A question that ends its cell, a cell with a place to answer, and after that what unfolds or runs."""
+    every = cells(path)
+    for place, cell in enumerate(every):
+        assert cell.source.count("**Predict.**") <= 1, cell.id
+        if "**Predict.**" in cell.source:
+            assert "<details><summary>Answer" not in cell.source, f"{cell.id}: the place to answer comes before the answer"
+            following = every[place + 1 :]
+            answered = next(i for i, after in enumerate(following) if re.search(r"^predict\(", after.source, re.MULTILINE))
+            assert "<details>" not in "".join(after.source for after in following[:answered]), cell.id
+            assert "**Predict.**" not in "".join(after.source for after in following[:answered]), cell.id
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=NAMES)
 def test_an_exercise_is_a_heading_a_cell_to_fill_in_and_its_check(path):
     every = cells(path)
     headings = {}

@@ -3,6 +3,7 @@ r"""Every number and every formula in the words of the notebooks, and of convent
 - **Numbers** are compared with code by the claims in prose.txt. What no claim covers makes a test fail.
 - **Formulas** with an equality are computed as they are written, in frames at random (formulas.py).
 - **Points and minutes** in headings and openings are those of nbgrader's cells.
+- **Predictions**: the folded answer has the numbers that `predict` takes for right; what it says of wrong ones is prose like any other.
 
 How to add a number: write a line into prose.txt, under the notebook and the cell's id, in the order of the text:
 
@@ -133,11 +134,16 @@ NAMES = {
 
 @dataclass
 class Cell:
-    """A Markdown cell, or a section of conventions.md; `names` are the variables after the code cell that follows it."""
+    """A Markdown cell, what a prediction says, or a section of conventions.md.
+
+    `names` are the variables after the code cell that follows; `right` and `wrong` are what a prediction takes for so.
+    """
 
     id: str
     text: str
     names: dict = field(default_factory=dict)
+    right: object = None
+    wrong: tuple = ()
 
 
 @dataclass(frozen=True)
@@ -189,16 +195,24 @@ def read_claims(text):
 def notebook(name):
     """The notebook's Markdown cells, with the variables that its code cells make while they run in this process."""
     book = nbformat.read(TEXTS / f"{name}.ipynb", as_version=4)
-    names, after, printed, waiting, cells = {"__name__": "__main__"}, {}, {}, [], []
+    names, after, printed, predicted, waiting, cells = {"__name__": "__main__"}, {}, {}, {}, [], []
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("TRANSFORM_LAB_GRADING", "1")  # nothing is drawn
+        patch.setattr(transform_lab, "predict", lambda answer, wrong=(): asked.append((answer, dict(wrong))))
         for cell in book.cells:
             if cell.cell_type == "markdown":
                 waiting.append(Cell(cell.id, cell.source))
                 cells.append(waiting[-1])
                 continue
+            asked = []
             with redirect_stdout(io.StringIO()) as output:
                 exec(compile(cell.source, f"{name}, cell {cell.id}", "exec"), names)
+            if asked:
+                ((predicted[cell.id], wrong),) = asked
+                text = "\n".join([*re.findall("^# (.*)", cell.source, re.MULTILINE), *wrong.values()])
+                cells.append(Cell(cell.id, text, right=predicted[cell.id], wrong=tuple(wrong)))
+                waiting.append(cells[-1])
+                continue  # it makes no names
             after[cell.id], printed[cell.id] = dict(names), [value for value, _ in numbers(output.getvalue())]
             for text in waiting:
                 text.names = after[cell.id]
@@ -207,6 +221,7 @@ def notebook(name):
         cell.names = {
             **cell.names, **NAMES, "points": points(name),
             "at": lambda cell_id: SimpleNamespace(**after[cell_id]), "printed": printed.__getitem__,
+            "predicted": predicted.__getitem__,
         }  # fmt: skip
     return cells
 
@@ -380,6 +395,26 @@ def claims():
 def test_numbers_and_formulas_are_what_the_code_says(name):
     found = problems(name, texts(name), claims())
     assert not found, "\n".join(["", *found])
+
+
+@pytest.mark.parametrize("name", NOTEBOOKS)
+def test_a_folded_answer_says_what_its_prediction_takes_for_right(name):
+    cells = notebook(name)
+    predictions = [(cell, cells[place + 1]) for place, cell in enumerate(cells) if cell.right is not None]
+    assert predictions
+    spoken_of = {
+        spoken for at, (lines, _) in claims().items() if at[0] == name
+        for line in lines for spoken in re.findall(r'predicted\("([\w-]+)"\)', line.code)
+    }  # fmt: skip
+    for prediction, answer in predictions:
+        if isinstance(prediction.right, str):
+            assert prediction.id in spoken_of, f"write a line into prose.txt on what {prediction.id} takes for right"
+            continue
+        right, said = flat(prediction.right), numbers(answer.text)
+        runs = [said[start : start + len(right)] for start in range(len(said) - len(right) + 1)]
+        close = [all(abs(v - r) <= off + MEANT_EXACTLY for (v, off), r in zip(run, right)) for run in runs]
+        assert any(close), f"{answer.id} does not say {right}, which {prediction.id} takes for right"
+        assert not [wrong for wrong in prediction.wrong if np.allclose(flat(wrong), right, atol=0.02)], prediction.id
 
 
 def test_every_claim_speaks_of_a_text_that_there_is():

@@ -6,6 +6,7 @@ On a robot, change the import lines and the rest of your code runs as it is:
     from std_msgs.msg import ColorRGBA, Header
     from visualization_msgs.msg import Marker
     import tf.transformations as tft
+    from ros_numpy import msgify, numpify
     import rospy
 """
 
@@ -21,6 +22,7 @@ from .animations import (
     animate_rotation,
 )
 from .check import check, once_done, say_what_is_missing
+from .conversions import msgify, numpify
 from .lab_markers import arrow_marker, axis_marker
 from .messages import ColorRGBA, Header, Marker, Point, Pose, PoseStamped, Quaternion, Vector3
 from .mistakes import show_mistake
@@ -51,6 +53,8 @@ __all__ = [
     "arrow_marker",
     "axis_marker",
     "check",
+    "msgify",
+    "numpify",
     "once_done",
     "plot_columns",
     "plot_from_above",

@@ -357,7 +357,7 @@ class Scene:
         frame = self._known(frame, f"{what}: the {kind}")
         pose = libraries.taken(pose) if libraries.is_matrix(pose) else pose
         if hasattr(pose, "orientation"):
-            matrix = _pose_matrix(pose, f"{what}: the pose")
+            matrix = pose_matrix(pose, f"{what}: the pose")
         else:
             matrix = rigid_transform(pose, f"{what}: the transform")
         within_reach(matrix[:3, 3], f"{what}: the translation")
@@ -397,7 +397,7 @@ def _position(value, what):
     return within_reach(coordinates[:3], what)
 
 
-def _pose_matrix(pose, what):
+def pose_matrix(pose, what):
     """Return the 4x4 matrix of a Pose whose orientation has length 1; `what` starts the error messages."""
     q, p = pose.orientation, pose.position
     for value, names in ((q, "xyzw"), (p, "xyz")):
