@@ -66,7 +66,7 @@ NO_CLAIMS = {
     r"`(Point|lookup_transform|rospy\.Publisher|node\.create_publisher)\([^`]*`|`ROS_PYTHON_CHECK_FIELDS=1`": "code to use",
     r"\bExamples? [12]\b": "a name",
     r"^\d\. ": "the number of an item",
-    r"`(v\[:3\]|M\[:2, :2\] =\s…|M\[:2, 3\] = …|np\.append\(v, 1\)|np\.eye\(4\))`": "code to use",
+    r"`(v\[:3\]|T\[:3, :3\] = R|T\[:3, 3\]|np\.append\(v, 1\)|(T = )?np\.eye\(4\))`": "code to use",
 }
 COUNTED = r"(?:centimetres|turns?|degrees|radians|points|minutes|digits)\b"  # words are numbers in front of these
 NUMERAL = re.compile(
@@ -427,7 +427,7 @@ SUM = support.points("1_rotation")
 @pytest.mark.parametrize(
     "name, cell_id, right, broken, says",
     [
-        ("1_rotation", "turns-predict", "(-1, 0, 0)", "(1, 0, 0)", "says [1.0, 0.0, 0.0]"),
+        ("1_rotation", "turns-predict-unfold", "(-1, 0, 0)", "(1, 0, 0)", "says [1.0, 0.0, 0.0]"),
         ("1_rotation", "columns-say", "0 & -1 & 0", "0 & 1 & 0", "gives [0.0, -1.0, 0.0, 1.0"),
         (
             "1_rotation",
@@ -437,13 +437,13 @@ SUM = support.points("1_rotation")
             f"the sum of nbgrader's cells gives [{SUM:g}]",
         ),
         ("1_rotation", "same-exercise", "(1 point)", "(2 points)", "nbgrader's cell gives [1]"),
-        ("1_rotation", "quaternions-formula", "= 0.3827$", "= 0.3826$", "is not true"),
-        ("2_homogeneous_transforms", "example-one", "raised by half a metre", "raised by a metre", "gives [45.0, 0.5]"),
+        ("1_rotation", "quaternions-formula-unfold", "= 0.3827$", "= 0.3826$", "is not true"),
+        ("2_homogeneous_transforms", "example-one-unfold", "raised by half a metre", "raised by a metre", "gives [45.0, 0.5]"),
         ("2_homogeneous_transforms", "example-one", r"& -\sin 45", r"& \sin 45", "is not true"),
         ("3_chaining", "inner-names-say", "{}^A T_B \\; {}^B T_C", "{}^B T_C \\; {}^A T_B", "is not true"),
-        ("3_chaining", "order", "You face left", "You walk 3 m, and face left", "nothing computes the number 3"),
-        ("4_inversion", "undo", "(\\mathbf{p}_A - \\mathbf{t})", "(\\mathbf{p}_A + \\mathbf{t})", "is not true"),
-        ("5_pre_grasp", "waypoints-say", "-0.241", "-0.242", "-0.241421356"),
+        ("3_chaining", "order-unfold", "You face left", "You walk 3 m, and face left", "nothing computes the number 3"),
+        ("4_inversion", "undo-unfold", "(\\mathbf{p}_A - \\mathbf{t})", "(\\mathbf{p}_A + \\mathbf{t})", "is not true"),
+        ("5_pre_grasp", "waypoints-say-unfold", "-0.241", "-0.242", "-0.241421356"),
         ("conventions", "the-example", "(−2, 1, −3)", "(−2, −1, −3)", "gives [-2.0, 1.0, -3.0]"),
         ("conventions", "frames", "`a_T_c = a_T_b @ b_T_c`", "`a_T_c = b_T_c @ a_T_b`", "is not true"),
         ("4_inversion", "robot", "Hand-eye", "$$ {}^A T_B $$ Hand-eye", "nothing checks the formula"),
