@@ -68,6 +68,27 @@ def test_lookup_chains_and_inverts(viewer):
     np.testing.assert_array_equal(viewer.lookup("a", "a"), np.eye(4))
 
 
+@pytest.mark.parametrize("seed", range(5))
+def test_a_path_leads_over_the_common_ancestor_and_its_product_is_the_lookup(seed):
+    random = np.random.default_rng(seed)
+    tree, names = Viewer("0"), ["0"]
+    for number in range(1, 12):
+        link = tft.random_rotation_matrix(random.random(3))
+        link[:3, 3] = random.uniform(-1, 1, 3)
+        tree.add_frame(str(number), link, random.choice(names))
+        names.append(str(number))
+    for target in names:
+        for source in names:
+            path, product = tree.path(target, source), np.eye(4)
+            assert (path[0], path[-1]) == (target, source) and len(set(path)) == len(path)
+            for here, there in zip(path, path[1:]):
+                assert here in (tree.frames[there].parent,) or tree.frames[here].parent == there
+                product = product @ tree.lookup(here, there)
+            np.testing.assert_allclose(product, tree.lookup(target, source), atol=1e-9)
+    with pytest.raises(ValueError, match="'12' is not known"):
+        tree.path("12", "0")
+
+
 def test_a_frame_that_is_replaced_takes_its_children_along(viewer):
     viewer.add_frame("b", np.eye(4))
     np.testing.assert_allclose(viewer.lookup("a", "c"), B_T_C, atol=1e-12)

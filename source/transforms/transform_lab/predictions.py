@@ -37,9 +37,13 @@ def predict(answer, wrong=()):
         return
     from IPython.display import display
 
-    told = escape(json.dumps({"right": right, "wrong": reasons}))
-    html = f'<form data-predict="{told}"><em>{ON_PAPER}</em></form><script>{_script()}</script>'
-    display({"text/plain": ON_PAPER, "text/html": html}, raw=True)
+    display({"text/plain": ON_PAPER, "text/html": place(right, reasons)}, raw=True)
+
+
+def place(right, wrong):
+    """The place to answer, in HTML: `right` a text or a list of numbers, `wrong` [[such an answer, why it is wrong], …]."""
+    told = escape(json.dumps({"right": right, "wrong": wrong}))
+    return f'<form data-predict="{told}"><em>{ON_PAPER}</em></form><script>{_script()}</script>'
 
 
 def _plain(answer):
