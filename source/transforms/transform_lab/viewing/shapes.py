@@ -53,23 +53,31 @@ class Mesh:
 
 @dataclass
 class Label:
-    """Text at a position (3 numbers), or `beside` it: wherever around it no other label stands.
+    """Text at a position (3 numbers), with a subscript; or near it, wherever no other label stands.
 
-    `height` is that of a capital letter, in metres, and the text a marker's; by default it is as large as text on a page.
+    near: one of the keys of NEAR; by default it stands at its position
+    height: that of a capital letter, in metres, and the text a marker's; by default it is as large as text on a page
     """
 
     text: str
     position: np.ndarray
     color: tuple = DARK
-    beside: bool = False
+    near: str | None = None
     height: float | None = None
+    subscript: str = ""
 
 
-# Where a label stands beside its position: to the right (in half widths of the text) and up (in lines), best first.
-# It takes the first place at which it covers least: a mark of the drawing counts 1, a letter 5, another name or the
-# edge of the picture 20.
-BESIDE = [(0, -1.2), (-1.2, -0.8), (1.2, -0.8), (0, -2.2), (-1.3, 0), (1.3, 0), (-1.2, 0.8), (1.2, 0.8), (0, 1.2)]
-BESIDE += [(-1.2, -1.8), (1.2, -1.8), (-1.2, 1.8), (1.2, 1.8), (0, 2.2), (0, -3.2), (0, 3.2), (0, -4.2)]
+# Where a label stands near its position, best first: a thing's name to the right (in half widths of the text) and up (in lines);
+# a letter at the tip of its axis on along the axis and to its left, in lines. It takes the first place at which it covers least:
+# a mark of the drawing counts 1, another label or the edge of the picture 20. Letters choose before names.
+NEAR = {
+    "tip": [(0, 0), (0.8, 0), (0, 0.9), (0, -0.9), (0.8, 0.9), (0.8, -0.9), (1.7, 0), (0, 1.8), (0, -1.8), (-0.8, 1), (-0.8, -1)],
+    "thing": [
+        *((0, -1.2), (-1.2, -0.8), (1.2, -0.8), (0, -2.2), (-1.3, 0), (1.3, 0), (-1.2, 0.8), (1.2, 0.8), (0, 1.2)),
+        *((-1.2, -1.8), (1.2, -1.8), (-1.2, 1.8), (1.2, 1.8), (0, 2.2), (0, -3.2), (0, 3.2), (0, -4.2)),
+    ],
+}  # fmt: skip
+LONGEST_SUBSCRIPT = 10  # letters
 
 
 @dataclass
@@ -133,25 +141,33 @@ def arrow(tail, tip, color, shaft, head, head_length):
     return rod(tail, neck, shaft, color) + rod(neck, tip, head, color, "cone")
 
 
-def frame_node(name, transform, length, ghost=False):
+def frame_node(name, transform, length, ghost=False, alone=True):
     """Return a Node with a frame's three axes, the letters at their tips, and its name.
 
-    A ghost is translucent and thicker, so that a solid frame at the same place is seen inside it.
+    A ghost is translucent and thicker, so that a solid frame at the same place is seen inside it. Where a frame is not `alone`, its
+    letters have its name as a subscript.
     """
-    solids, letters = _axes(length, ghost)
-    labels = [*letters, Label(name, np.zeros(3), beside=True)]
+    solids, letters = _axes(length, ghost, "" if alone else subscript(name))
+    labels = [*letters, Label(name, np.zeros(3), near="thing")]
     return Node(path("frames", name), transform, list(solids), labels=labels)
 
 
+def subscript(name):
+    """Return the name of a frame as a subscript: "A" for "frame_a", "base" for "base_link"."""
+    short = name.removeprefix("frame_").removesuffix("_link")
+    short = short.upper() if len(short) == 1 else short
+    return short if len(short) <= LONGEST_SUBSCRIPT else f"{short[: LONGEST_SUBSCRIPT - 1]}…"
+
+
 @functools.lru_cache(50)
-def _axes(length, ghost):
-    """Return the solids and the letters of a frame's axes, which are the same in every frame of a scene."""
+def _axes(length, ghost, subscript):
+    """Return the solids and the letters of a frame's axes."""
     solids, letters = [], []
     thick = length * (2.2 if ghost else 1)
-    for letter, axis, color in zip("XYZ", np.eye(3), (X_RED, Y_GREEN, Z_BLUE)):
+    for letter, axis, color in zip("xyz", np.eye(3), (X_RED, Y_GREEN, Z_BLUE)):
         shown = translucent(color) if ghost else color
         solids += arrow((0, 0, 0), length * axis, shown, 0.05 * thick, 0.13 * thick, 0.24 * length)
-        letters.append(Label(letter, (1.25 if ghost else 1.12) * length * axis, color))
+        letters.append(Label(letter, (1.25 if ghost else 1.12) * length * axis, color, "tip", subscript=subscript))
     solids.append(placed("sphere", (0, 0, 0), 0.08 * thick, translucent(DARK) if ghost else DARK))
     return solids, letters
 
