@@ -15,7 +15,10 @@ def test_they_do_what_the_exercises_of_notebook_2_ask_for(seed):
     pose = EXERCISES["transform_to_pose"].reference(a_T_b)
     np.testing.assert_allclose(numpify(pose), EXERCISES["pose_to_transform"].reference(pose), atol=1e-12)
     np.testing.assert_allclose(numpify(msgify(Pose, a_T_b)), a_T_b, atol=1e-12)
-    assert [type(value) for value in (msgify(Pose, a_T_b).position.x, msgify(Pose, a_T_b).orientation.w)] == [float, float]
+    assert [type(value) for value in (msgify(Pose, a_T_b).position.x, msgify(Pose, a_T_b).orientation.w)] == [
+        float,
+        float,
+    ]
 
 
 @pytest.mark.parametrize(

@@ -65,9 +65,13 @@ def test_a_prediction_can_be_answered_before_it_is_unfolded(path):
     for place, cell in enumerate(every):
         assert cell.source.count("**Predict.**") <= 1, cell.id
         if "**Predict.**" in cell.source:
-            assert "<details><summary>Answer" not in cell.source, f"{cell.id}: the place to answer comes before the answer"
+            assert "<details><summary>Answer" not in cell.source, (
+                f"{cell.id}: the place to answer comes before the answer"
+            )
             following = every[place + 1 :]
-            answered = next(i for i, after in enumerate(following) if re.search(r"^predict\(", after.source, re.MULTILINE))
+            answered = next(
+                i for i, after in enumerate(following) if re.search(r"^predict\(", after.source, re.MULTILINE)
+            )
             assert "<details>" not in "".join(after.source for after in following[:answered]), cell.id
             assert "**Predict.**" not in "".join(after.source for after in following[:answered]), cell.id
 

@@ -46,7 +46,10 @@ def scenes(path):
 def covered(drawing, fixed_frame, camera):
     """Pairs of labels of which one covers the other."""
     nodes = in_frame(drawing.nodes, drawing.frames[fixed_frame])
-    boxes = [(label, np.array(place), TOUCH * np.array(half_size(label, font))) for label, _, font, place in places(nodes, camera)]
+    boxes = [
+        (label, np.array(place), TOUCH * np.array(half_size(label, font)))
+        for label, _, font, place in places(nodes, camera)
+    ]
     return [
         (f"{one.text}{one.subscript}", f"{other.text}{other.subscript}")
         for i, (one, where, half) in enumerate(boxes)
@@ -63,7 +66,10 @@ def looks(viewer):
     still = Camera(drawing.seen_from(scene.fixed_frame), page.ASPECT, viewer._seen_from, top)
     seen = np.concatenate([d.seen_from(scene.fixed_frame) for d in (drawing, *states)])
     camera = Camera(seen, page.ASPECT, viewer._seen_from, top)
-    return [("the still picture", drawing, still), *((f"state {i}", d, camera) for i, d in enumerate(states or [drawing]))]
+    return [
+        ("the still picture", drawing, still),
+        *((f"state {i}", d, camera) for i, d in enumerate(states or [drawing])),
+    ]
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
@@ -89,7 +95,13 @@ def test_labels_of_frames_at_random_keep_apart(seed, number):
 
 @pytest.mark.parametrize(
     "name, short",
-    [("frame_a", "A"), ("B", "B"), ("base_link", "base"), ("camera", "camera"), ("camera_color_optical_frame", "camera_co…")],
+    [
+        ("frame_a", "A"),
+        ("B", "B"),
+        ("base_link", "base"),
+        ("camera", "camera"),
+        ("camera_color_optical_frame", "camera_co…"),
+    ],
 )
 def test_an_axis_is_named_by_its_frame_in_short(name, short):
     assert subscript(name) == short

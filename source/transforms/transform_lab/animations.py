@@ -24,7 +24,9 @@ __all__ = [
     "animate_retelling",
     "animate_rotation",
 ]
-EDGES = [(i, i | bit) for i in range(8) for bit in (1, 2, 4) if not i & bit]  # of a cube whose corners are numbered in binary
+EDGES = [
+    (i, i | bit) for i in range(8) for bit in (1, 2, 4) if not i & bit
+]  # of a cube whose corners are numbered in binary
 
 
 def animate_rotation(rotation, names=("frame_a", "frame_b")):
@@ -250,7 +252,9 @@ def animate_journey(object_pose, stops, wrong_stops=None):
     Raises ValueError for fewer than two stops, other names, and for what is no rigid transform.
     """
     if len(stops) < 2 or wrong_stops and [*wrong_stops] != [*stops]:
-        raise ValueError(f"animate_journey takes two stops or more, wrong ones of the same names; got {', '.join(stops)}")
+        raise ValueError(
+            f"animate_journey takes two stops or more, wrong ones of the same names; got {', '.join(stops)}"
+        )
     viewer, known = Viewer("base_link"), Viewer("base_link")
     known.add_frame("object", object_pose)
     base_T_object = known.lookup("base_link", "object")

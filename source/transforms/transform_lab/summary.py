@@ -69,4 +69,6 @@ def _table(rows, sentences):
         for row in rows
     )
     head = f"<tr><th></th><th{left}>exercise</th><th>points</th><th{left}>what the check says</th></tr>"
-    return f'<div style="overflow-x:auto"><table>{head}{cells}</table></div>' + "".join(f"<p>{escape(sentence)}</p>" for sentence in sentences)
+    return f'<div style="overflow-x:auto"><table>{head}{cells}</table></div>' + "".join(
+        f"<p>{escape(sentence)}</p>" for sentence in sentences
+    )

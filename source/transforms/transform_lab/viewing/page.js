@@ -194,8 +194,13 @@ function placeLabels(labels, viewer, pane, view, object) {
       along = {x: (x - before.x) / length * 2 * h, y: (y - before.y) / length * 2 * h};
       across = {x: along.y, y: -along.x};
     }
-    for (const [one, other] of view.near[label.near] ?? [[0, 0]]) {
-      const place = {x: x + one * along.x + other * across.x, y: y + one * along.y + other * across.y, w, h, bad: 0};
+    const candidates = (view.near[label.near] ?? [[0, 0]]).map(
+      ([one, other]) => [x + one * along.x + other * across.x, y + one * along.y + other * across.y]);
+    const preferred = candidates.length;
+    if (label.near) candidates.push(...view.around.map(([right, up]) => [x + right * 2 * h, y - up * 2 * h]));
+    for (const [number, [placeX, placeY]] of candidates.entries()) {
+      if (best.bad === 0 || number >= preferred && best.bad < 20) break;
+      const place = {x: placeX, y: placeY, w, h, bad: 0};
       if (Math.min(place.x, width - place.x) < w || Math.min(place.y, height - place.y) < h) place.bad += 20;
       for (const t of taken) {
         if (Math.abs(place.x - t.x) < w + t.w && Math.abs(place.y - t.y) < h + t.h) place.bad += t.bad;

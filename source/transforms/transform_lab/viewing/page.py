@@ -20,7 +20,7 @@ from .camera import FIELD_OF_VIEW, NEAREST, VIEWS, Camera
 from .drawing import grid
 from .meshcat_commands import block, changes, delete, folder, properties, set_object, set_property, set_transform
 from .picture import webp
-from .shapes import NEAR
+from .shapes import AROUND, NEAR
 from .shapes import path as node_path
 
 ASPECT = 1.6  # width by height of what is drawn
@@ -113,6 +113,7 @@ def render(drawing, fixed_frame, seen_from, motion=None, states=(), live=None, c
         "nearest": NEAREST,
         "labels": found,
         "near": NEAR,
+        "around": AROUND,
         "text": drawing.text,
     }
     scene = _packed(block([json.dumps(view).encode()]) + b"".join(blocks))

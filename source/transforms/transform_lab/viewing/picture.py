@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .shapes import NEAR, moved
+from .shapes import AROUND, NEAR, moved
 
 HEIGHT = 495  # pixels
 FINE = 2  # times as many pixels in each direction are painted first, so that edges are smooth
@@ -17,6 +17,7 @@ CAPITAL = 0.72  # of its font's size: the height of a capital letter
 MIDDLE = 0.26  # of its font's size: how far the middle of a line is above the line that letters stand on
 LOWER = 0.23  # of a capital letter's height
 LOWERED = 4  # pixels, a subscript
+COVERED = 20  # how bad it is to cover another label, or to stand on the edge of the picture
 LINE = 0.038  # height of a line, of the picture's height
 BOLD = "DejaVuSans-Bold.ttf"
 LARGEST = 600  # of a font; above it the picture would be all letter
@@ -155,10 +156,13 @@ def places(nodes, camera):
             x, y = np.abs(marks[:, :2] - candidate).T
             edge = np.minimum(candidate, [camera.aspect, 1] - candidate)
             cut_off = np.any(edge < [half_width, half_height])
-            return badness[(x < half_width + w) & (y < half_height + h)].sum() + 20 * cut_off
+            return badness[(x < half_width + w) & (y < half_height + h)].sum() + COVERED * cut_off
 
-        x, y = min(candidates, key=badness_at)
-        taken.append((x, y, half_width, half_height, 20))
+        best = min(candidates, key=badness_at)
+        if label.near and badness_at(best) >= COVERED:
+            best = min([best, *(place + LINE * np.array(offset) for offset in AROUND)], key=badness_at)
+        x, y = best
+        taken.append((x, y, half_width, half_height, COVERED))
         if label.height is not None:  # RViz has a text lower than its position
             y -= LOWER * CAPITAL * size / HEIGHT
         placed.append((label, size, font, (x, y)))

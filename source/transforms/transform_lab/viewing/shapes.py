@@ -69,14 +69,22 @@ class Label:
 
 # Where a label stands near its position, best first: a thing's name to the right (in half widths of the text) and up (in lines);
 # a letter at the tip of its axis on along the axis and to its left, in lines. It takes the first place at which it covers least:
-# a mark of the drawing counts 1, another label or the edge of the picture 20. Letters choose before names.
+# a mark of the drawing counts 1, another label or the edge of the picture 20. Letters choose before names. Where all of these are
+# taken, there is AROUND: to the right and up, in lines.
 NEAR = {
-    "tip": [(0, 0), (0.8, 0), (0, 0.9), (0, -0.9), (0.8, 0.9), (0.8, -0.9), (1.7, 0), (0, 1.8), (0, -1.8), (-0.8, 1), (-0.8, -1)],
+    "tip": [
+        *((0, 0), (0.8, 0), (0, 0.9), (0, -0.9), (0.8, 0.9), (0.8, -0.9), (1.7, 0), (0, 1.8), (0, -1.8), (-0.8, 1), (-0.8, -1)),
+    ],
     "thing": [
         *((0, -1.2), (-1.2, -0.8), (1.2, -0.8), (0, -2.2), (-1.3, 0), (1.3, 0), (-1.2, 0.8), (1.2, 0.8), (0, 1.2)),
         *((-1.2, -1.8), (1.2, -1.8), (-1.2, 1.8), (1.2, 1.8), (0, 2.2), (0, -3.2), (0, 3.2), (0, -4.2)),
     ],
 }  # fmt: skip
+AROUND = [
+    (round(far * math.sin(math.radians(turn)), 2), round(far * math.cos(math.radians(turn)), 2))
+    for far in (2.5, 3.5, 4.5, 5.5)
+    for turn in range(0, 360, 30)
+]
 LONGEST_SUBSCRIPT = 10  # letters
 
 
