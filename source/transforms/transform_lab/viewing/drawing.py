@@ -16,6 +16,7 @@ from .shapes import (
     arrow,
     frame_node,
     gripper_node,
+    hand_node,
     moved,
     path,
     placed,
@@ -94,6 +95,9 @@ def _draw(scene, at):
     for gripper in scene.grippers.values():
         nodes.append(gripper_node(gripper, where[gripper.frame]))
         ends += _corners(nodes[-1:]) if at is None or gripper.frame in at else []
+    for hand in scene.hands.values():
+        nodes.append(hand_node(hand, where[hand.frame]))
+        ends += _corners(nodes[-1:]) if at is None or hand.frame in at else []
     for name, thing in (*scene.points.items(), *scene.arrows.items()):
         if at is None or name in at:
             ends += [moved(where[thing.frame], p)[None] for p in vars(thing).values() if isinstance(p, np.ndarray)]

@@ -65,6 +65,14 @@ class Gripper:
 
 
 @dataclass(frozen=True, eq=False)
+class Hand:
+    """A right hand whose index finger, middle finger and thumb lie along the x, y and z axes of `frame`, `length` metres long."""
+
+    frame: str
+    length: float
+
+
+@dataclass(frozen=True, eq=False)
 class Published:
     """A marker, and `place`, the 4x4 root_T_frame of its frame when it was published; None while that is not known, and
     for one that is locked to its frame.
@@ -81,7 +89,7 @@ class Scene:
         self.root = _name(fixed_frame, "fixed_frame")
         length = None if length is None else _size(length, "the length of the fixed frame's axes")
         self.frames = {fixed_frame: Frame(None, np.eye(4), length, ghost)}
-        self.points, self.arrows, self.boxes, self.grippers, self.markers = {}, {}, {}, {}, {}
+        self.points, self.arrows, self.boxes, self.grippers, self.hands, self.markers = {}, {}, {}, {}, {}, {}
         self.remarks = {}  # what RViz says of markers, drawn or not, by their ns and id
         self._text, self._fixed_frame = "", fixed_frame
 
@@ -210,6 +218,15 @@ class Scene:
         self.grippers[frame] = Gripper(frame, opening, rgba(color, f"add_gripper({frame!r}): the color"), bool(ghost))
         self._changed()
 
+    def add_hand(self, frame=None, length=0.1):
+        """Draw a right hand on `frame`, by default the root: the index finger along x, the middle finger along y, the thumb along z.
+
+        `length` is that of these fingers, in metres.
+        """
+        frame = self._known(frame, f"add_hand({frame!r}): the frame")
+        self.hands[frame] = Hand(frame, _size(length, f"add_hand({frame!r}): length"))
+        self._changed()
+
     def publish(self, marker):
         """Draw a visualization_msgs/Marker, as publishing it to RViz does; the same ns and id replace each other.
 
@@ -305,6 +322,7 @@ class Scene:
             lines.append(f"box {name} in {box.frame}: middle ({where}), {' x '.join(f'{v:.4g}' for v in box.size)} m")
         for gripper in self.grippers.values():
             lines.append(f"gripper on {gripper.frame}: opening {gripper.opening:.4g} m")
+        lines += [f"right hand on {hand.frame}: index finger x, middle finger y, thumb z" for hand in self.hands.values()]
         lines += [_describe_marker(published.marker) for published in self.markers.values()]
         lines += self.said(everything=True)
         return "\n".join(lines + ([self.text] if self.text else []))

@@ -18,6 +18,7 @@ DARK = (0.15, 0.15, 0.2, 1)
 CORNERS = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])  # of the unit box
 GREY = (0.55, 0.55, 0.6, 1)
 ORANGE, PURPLE = (0.93, 0.49, 0.0, 1), (0.52, 0.18, 0.66, 1)  # points and arrows
+SKIN = (0.90, 0.72, 0.58, 1)  # a hand
 BROWN, STEEL = (0.76, 0.62, 0.42, 1), (0.38, 0.42, 0.48, 1)  # boxes and grippers
 
 
@@ -193,6 +194,26 @@ def gripper_node(gripper, transform):
     parts += [((-0.088, 0, 0), (0.03, 0.12, 0.04), color), ((-0.123, 0, 0), (0.04, 0.05, 0.04), color)]
     for middle, size, shade in parts:
         node.solids.append(placed("box", unit * np.array(middle), unit * np.array(size), shade))
+    return node
+
+
+def hand_node(hand, transform):
+    """Return a Node with a right hand at `transform`: index finger along x, middle finger along y, thumb along z; palm to the left.
+
+    The other two fingers are closed. Its proportions are those of a hand whose index finger is 9 cm long.
+    """
+    node = Node(path("hands", hand.frame), transform)
+    unit = hand.length / 0.09  # so that what follows is in metres for such a hand
+    bones = [((0, 0, 0), (0.078, 0, 0)), ((0, 0, 0), (0, 0.08, 0)), ((0, 0, 0), (0, 0, 0.075))]
+    for low in (-0.022, -0.044):
+        joints = [(-0.005, 0, low), (0.028, 0.012, low), (0.012, 0.036, low), (-0.02, 0.026, low)]
+        bones += list(zip(joints, joints[1:]))
+    for start, end in bones:
+        start, end = unit * np.array(start), unit * np.array(end)
+        node.solids += rod(start, end, 0.019 * unit, SKIN)
+        node.solids += [placed("sphere", joint, 0.019 * unit, SKIN) for joint in (start, end)]
+    node.solids.append(placed("box", unit * np.array([-0.045, 0, -0.022]), unit * np.array([0.08, 0.024, 0.066]), SKIN))
+    node.solids += rod(unit * np.array([-0.08, 0, -0.022]), unit * np.array([-0.17, 0, -0.022]), 0.045 * unit, SKIN)
     return node
 
 
