@@ -9,6 +9,7 @@ from support import ROOT
 TEXTS = ROOT / "source/transforms"
 NOTEBOOKS = sorted(TEXTS.glob("*.ipynb"))
 NAMES = [path.stem for path in NOTEBOOKS]
+PAGES = sorted(TEXTS.glob("*.md"))
 TEACHES_NO_IDEA = ("Question:", "Three mistakes", "Where a robot uses this", "Summary")
 MOVES = re.compile(r"\.interact\(|\banimate")
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
@@ -106,6 +107,11 @@ def test_a_notebook_opens_and_ends_as_the_others(path):
     assert "**Afterwards you can**" in every[0].source and "](conventions.md)" in every[0].source
     assert list(parts)[-3:] == ["Three mistakes people make here", "Where a robot uses this", "Summary"]
     assert every[-1].source == f'sum_up("{path.stem}")'
+    assert set(LINK.findall(every[0].source)) >= {
+        *(f"{name}.ipynb" for name in NAMES if name != path.stem),
+        "glossary.md",
+        "card.md",
+    }
 
     mistakes = parts["Three mistakes people make here"]
     words, pictures = mistakes[0::2], mistakes[1::2]
@@ -124,7 +130,7 @@ def text_of(path):
     return path.read_text(encoding="utf-8") if path.suffix == ".md" else "\n\n".join(c.source for c in prose(path))
 
 
-@pytest.mark.parametrize("path", [*NOTEBOOKS, TEXTS / "conventions.md"], ids=[*NAMES, "conventions"])
+@pytest.mark.parametrize("path", [*NOTEBOOKS, *PAGES], ids=[*NAMES, *(page.stem for page in PAGES)])
 def test_links_resolve_and_stay_in_the_folder(path):
     text = text_of(path)
     assert not re.search(r"https?://|\bwww\.", text)

@@ -53,11 +53,12 @@ TEXTS = ROOT / "source/transforms"
 CLAIMS = ROOT / "tests/notebooks/prose.txt"
 NOTEBOOKS = sorted(path.stem for path in TEXTS.glob("*.ipynb"))
 CONVENTIONS = "conventions"
+PAGES = [CONVENTIONS, "glossary"]
 SAME_ORIGIN = "same origin"  # what may follow "where": the cell speaks of rotations only
 
 # Numerals that state nothing which code could compute.
 NO_CLAIMS = {
-    r"\[(notebook )?(\d)\]\(\2_\w+\.ipynb\)": "a link to another notebook",
+    r"\[(notebook )?(\d)( [\w -]+)?\]\(\2_\w+\.ipynb\)|\*\*\d [\w -]+\*\* [→·]": "a link to another notebook, or this one",
     r"\b[234]x[234]\b": "the shape of a matrix",
     r"\bnotebook \d\b": "another notebook",
     r"^# \d · ": "the title",
@@ -227,15 +228,15 @@ def notebook(name):
 
 
 @cache
-def conventions():
-    """The sections of conventions.md, each under the first words of its heading."""
-    parts = re.split(r"^(?=## )", (TEXTS / "conventions.md").read_text(encoding="utf-8"), flags=re.MULTILINE)
+def page(name):
+    """The sections of conventions.md or of another page, each under the first words of its heading."""
+    parts = re.split(r"^(?=## )", (TEXTS / f"{name}.md").read_text(encoding="utf-8"), flags=re.MULTILINE)
     titles = [re.match("#+ (.*?)[:,\n]", part)[1] for part in parts]
     return [Cell(re.sub(r"\W+", "-", title.lower()), part, NAMES) for title, part in zip(titles, parts)]
 
 
 def texts(name):
-    return conventions() if name == CONVENTIONS else notebook(name)
+    return page(name) if name in PAGES else notebook(name)
 
 
 @cache
@@ -262,7 +263,7 @@ def problems(name, cells, claims):
     found, given = [], {}
     for cell in cells:
         checked = _Checked(cell, *claims.get((name, cell.id), ((), ())), given)
-        if name != CONVENTIONS:
+        if name not in PAGES:
             checked.points(points(name))
         checked.claims()
         checked.formulas(shared_origin=name == NOTEBOOKS[0])
@@ -293,8 +294,10 @@ class _Checked:
             self.compare(match, [(int(match["points"]), 0)], [right], "nbgrader's cell")
         for match in TOTAL.finditer(self.cell.text):
             self.compare(match, [(int(match["points"]), 0)], [sum(of.values())], "the sum of nbgrader's cells")
-            if not 25 <= int(match["minutes"]) <= 40:
-                self.problems.append(f"{match['minutes']} minutes: a notebook is made for 25 to 40")
+            if not 25 <= int(match["minutes"]) <= 100:
+                self.problems.append(f"{match['minutes']} minutes: a notebook is made for 25 to 100")
+            if int(match["minutes"]) > 60 and not re.search(r"places? to\s+stop", match[0]):
+                self.problems.append(f"{match['minutes']} minutes: say where to stop")
 
     def claims(self):
         place = 0
@@ -391,7 +394,7 @@ def claims():
     return read_claims(CLAIMS.read_text(encoding="utf-8"))
 
 
-@pytest.mark.parametrize("name", [*NOTEBOOKS, CONVENTIONS])
+@pytest.mark.parametrize("name", [*NOTEBOOKS, *PAGES])
 def test_numbers_and_formulas_are_what_the_code_says(name):
     found = problems(name, texts(name), claims())
     assert not found, "\n".join(["", *found])
@@ -418,7 +421,7 @@ def test_a_folded_answer_says_what_its_prediction_takes_for_right(name):
 
 
 def test_every_claim_speaks_of_a_text_that_there_is():
-    assert {name for name, _ in claims()} <= {*NOTEBOOKS, CONVENTIONS}
+    assert {name for name, _ in claims()} <= {*NOTEBOOKS, *PAGES}
 
 
 SUM = support.points("1_rotation")

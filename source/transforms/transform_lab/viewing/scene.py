@@ -322,7 +322,9 @@ class Scene:
             lines.append(f"box {name} in {box.frame}: middle ({where}), {' x '.join(f'{v:.4g}' for v in box.size)} m")
         for gripper in self.grippers.values():
             lines.append(f"gripper on {gripper.frame}: opening {gripper.opening:.4g} m")
-        lines += [f"right hand on {hand.frame}: index finger x, middle finger y, thumb z" for hand in self.hands.values()]
+        lines += [
+            f"right hand on {hand.frame}: index finger x, middle finger y, thumb z" for hand in self.hands.values()
+        ]
         lines += [_describe_marker(published.marker) for published in self.markers.values()]
         lines += self.said(everything=True)
         return "\n".join(lines + ([self.text] if self.text else []))
