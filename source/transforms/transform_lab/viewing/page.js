@@ -151,7 +151,7 @@ function blocks(buffer) {
 // Light or dark, as the notebook around is; a page by itself, or one that may not look around, is light.
 function followTheme(change) {
   let around;
-  try { around = window.parent.document.body; } catch {}
+  try { if (window.parent !== window) around = window.parent.document.body; } catch {}
   const dark = () => around?.dataset.jpThemeLight === "false" || around?.classList.contains("vscode-dark");
   const show = () => {
     document.body.className = dark() ? "dark" : "light";
