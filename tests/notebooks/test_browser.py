@@ -155,7 +155,7 @@ def test_scene_and_slider_agree(live):
         until(scene, "b", about_z(degrees))
     # the browser drops the scene, so that the picture is seen, and it comes back when it is wanted again
     scene.evaluate("() => { viewer.renderer.getContext().getExtension('WEBGL_lose_context').loseContext() }")
-    scene.wait_for_function("() => document.body.style.background === 'none'")
+    scene.wait_for_function("() => document.body.className === ''")
     assert not scene.locator("canvas").is_visible()
     scene.evaluate("() => { document.documentElement.dispatchEvent(new Event('mouseenter')) }")
     scene = live.scene(0)
@@ -376,7 +376,7 @@ def test_figures_without_what_draws_them_are_pictures_until_it_comes(page, serve
         notebook.activate(cell)
         notebook.command("notebook:run-cell")
     notebook.wait_until_idle()
-    frame.wait_for_function("() => document.body.style.background === 'white'")
+    frame.wait_for_function("() => document.body.className")
     assert shown_in(notebook) == [3, 4] and frame.get_by_text(TO_TURN).count() == 0
 
 
