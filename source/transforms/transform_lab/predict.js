@@ -1,5 +1,6 @@
-// Turns each place for a prediction on the page, that is not one yet, into fields or buttons, and says what an answer is worth.
-for (const form of document.querySelectorAll("form[data-predict]")) {
+// Turns a place for a prediction into fields or buttons, and says what an answer is worth.
+window.transformLabPredict = form => {
+  if (!form.dataset.predict) return;
   const {right, wrong} = JSON.parse(form.dataset.predict), said = document.createElement("output");
   form.removeAttribute("data-predict");
   Object.assign(said.style, {marginLeft: "8px", whiteSpace: "pre-wrap"});
@@ -23,7 +24,7 @@ for (const form of document.querySelectorAll("form[data-predict]")) {
       };
       return made;
     }), said);
-    continue;
+    return;
   }
   // 0.5, 0,5 and 1/2 are the same, and a minus may be typed or copied from the text.
   const number = text => {
@@ -51,4 +52,5 @@ for (const form of document.querySelectorAll("form[data-predict]")) {
     return false;
   };
   form.replaceChildren(...fields.flatMap((field, i) => names[i] ? [names[i], field] : [field]), tell, said);
-}
+};
+document.querySelectorAll("form[data-predict]").forEach(window.transformLabPredict);

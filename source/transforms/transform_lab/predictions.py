@@ -15,6 +15,8 @@ from .jupyter import being_graded, shell
 
 __all__ = ["predict"]
 
+# VS Code has each output in a shadow root, in which a script does not find it: from there the output has to call the script.
+REACHED = "window.transformLabPredict?.(this.parentNode)"
 ON_PAPER = "Answer on paper, then unfold the answer below."
 
 
@@ -43,7 +45,8 @@ def predict(answer, wrong=()):
 def place(right, wrong):
     """The place to answer, in HTML: `right` a text or a list of numbers, `wrong` [[such an answer, why it is wrong], …]."""
     told = escape(json.dumps({"right": right, "wrong": wrong}))
-    return f'<form data-predict="{told}"><em>{ON_PAPER}</em></form><script>{_script()}</script>'
+    here = f'<img alt="" hidden src="data:," onerror="{REACHED}">'
+    return f'<form data-predict="{told}"><em>{ON_PAPER}</em>{here}</form><script>{_script()}</script>'
 
 
 def _plain(answer):
