@@ -36,8 +36,7 @@ def turn(vector):
 
 def turned(q, vector):
     """x, y, z, w of the rotation of a quaternion, after a turn by a rotation vector given in the turned frame."""
-    product = np.array(_product(_unit(q), _quaternion_of_vector(vector)))
-    return product / _length(product)
+    return np.array(_unit(_product(_unit(q), _quaternion_of_vector(vector))))
 
 
 def quaternion_of_turns(angles, axes, fixed):
