@@ -15,6 +15,7 @@ HTML_TAGS = nh3.ALLOWED_TAGS - {"a", "img"}
 LONGEST_HTML = 100_000  # characters; a table of pandas's has a few thousand
 GROWS = 6  # times as long as it was, text may become: "&" becomes "&amp;"
 DEEPEST = 100  # elements inside each other
+MOST_RUNS = 10**9  # of a notebook's cells
 # A parser repeats these in every paragraph until they are closed, as often as their attributes differ.
 REPEATED = re.compile(r"<(?:a|b|big|code|em|font|i|nobr|s|small|strike|strong|tt|u)[\s/]", re.IGNORECASE)
 MOST_REPEATED = 20  # elements for each character that there would be
@@ -102,10 +103,14 @@ def safe(output: object) -> dict | None:
             return None
         result = {"output_type": kind, "data": kept, "metadata": {}}
         if kind == "execute_result":
-            count = output.get("execution_count")
-            result["execution_count"] = count if type(count) is int else None
+            result["execution_count"] = counted(output.get("execution_count"))
         return result
     return None
+
+
+def counted(value: object) -> int | None:
+    """The number of a cell's run, as a notebook may have it; None for what is none."""
+    return value if type(value) is int and 0 <= value < MOST_RUNS else None
 
 
 def _text(value):

@@ -23,7 +23,7 @@ from transform_lab.judging.kinds import ARGUMENT, EARLIER_ANSWER
 from transform_lab.judging.verdict import Reply, is_right_itself
 
 from .. import ASSIGNMENT
-from ..untrusted import printable
+from ..untrusted import counted, printable
 from .account import Account
 from .bounds import COURSE, PATIENCE, WALL, Allowance, Limits, NotStarted
 from .bubblewrap import USER, Namespaces, copy_code
@@ -461,13 +461,12 @@ class NotebookProcess(Asked):
         try:
             outputs = [dict(output) for output in reply["outputs"][: self.outputs_left]]
             self.outputs_left -= len(outputs)
-            count = reply["execution_count"]
             changed = {
                 self.runs[cell]: self.runs[cell].change(at, output) for cell, at, output in reply.get("changed", [])
             }
             run = CellRun(
                 outputs,
-                count if type(count) is int else None,
+                counted(reply["execution_count"]),
                 reply["ended"] is True,
                 reply.get("failed") is True,
                 list(changed),

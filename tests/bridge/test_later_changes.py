@@ -16,7 +16,7 @@ HANDED_IN = "2026-11-20 12:00:00 UTC"  # two days late
 
 
 @pytest.fixture
-def handed_in(course, hand_in, solved):
+def handed_in(course, hand_in, solved, slow):
     """A graded course: alice has handed in two notebooks, two days after what will be due; bob one, without a time."""
     hand_in(course, "alice", {name: solved[name] for name in ALICE})
     (course.submitted("alice") / "timestamp.txt").write_text(HANDED_IN)

@@ -49,7 +49,7 @@ def test_adequacy(name, thorough):
 
 
 @every_exercise
-def test_it_is_the_judge_who_says_so(name, thorough):
+def test_it_is_the_judge_who_says_so(name, thorough, slow):
     """What is measured quickly, the judge says too."""
     exercise = EXERCISES[name]
     tried = to_be_tried(Course(ROOT), exercise)[:: 1 if thorough else 10]

@@ -57,7 +57,7 @@ def test_in_any_order(thorough):
     assert not different
 
 
-def test_in_a_fresh_process_each(thorough):
+def test_in_a_fresh_process_each(thorough, slow):
     """But for what remembers earlier calls, and is wrong for that alone."""
     with ProcessPoolExecutor(1, get_context("spawn")) as pool:  # in this process, other tests have called them
         differ = {label: pair for found in pool.map(partial(differing, thorough), EXERCISES) for label, pair in found}

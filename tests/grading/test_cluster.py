@@ -100,7 +100,7 @@ def started(course):
         process.wait(60)
 
 
-def test_a_class_is_graded_over_tls_as_the_readme_sets_it_up(course, hand_in, solved, tmp_path, monkeypatch, started):
+def test_a_class_is_graded_over_tls_as_the_page_sets_it_up(course, hand_in, solved, tmp_path, monkeypatch, started):
     """With certificates made by the documentation's own commands; who has none gets no answer."""
     shutil.which("openssl") or lacking("needs openssl, to make certificates")
     (commands,) = re.findall(

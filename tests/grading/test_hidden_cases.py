@@ -144,7 +144,7 @@ def test_a_function_whose_threads_run_is_judged_beside_them(course, hand_in, san
 
 
 @pytest.mark.parametrize("name", EXERCISES)
-def test_hidden_cases_come_in_an_order_of_their_own(name):
+def test_hidden_cases_come_in_an_order_of_their_own(name, slow):
     exercise = EXERCISES[name]
     public = [case["family"] for case in key(exercise, PUBLIC_SEED)["cases"]]
     orders = {tuple(case["family"] for case in key(exercise, seed)["cases"]) for seed in range(4)}

@@ -5,7 +5,7 @@ import sys
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.spatial.transform import Rotation
@@ -15,7 +15,9 @@ from transform_lab import arithmetic
 from autograder.exercises import cases
 
 NUMBERS = st.floats(-4.0, 4.0) | st.sampled_from([0.0, 1.0, -1.0, 1e-3, 1e-9, np.pi])
-VECTORS, QUATERNIONS = (arrays(float, number, elements=NUMBERS) for number in (3, 4))
+SHORT, LONG = np.full(4, 1e-250), np.full(4, 1e200)  # the squares of their numbers are 0, and infinite
+ODD = st.sampled_from([SHORT[0], LONG[0], 5e-324, np.inf, np.nan])
+VECTORS, QUATERNIONS = arrays(float, 3, elements=NUMBERS), arrays(float, 4, elements=NUMBERS | ODD)
 
 
 def of_matrix(R):
@@ -38,6 +40,8 @@ def alike(ours, theirs):
 
 
 @given(QUATERNIONS)
+@example(SHORT)
+@example(LONG)
 def test_of_a_quaternion(q):
     alike(lambda: arithmetic.matrix_of(q), lambda: Rotation.from_quat(q).as_matrix())
 
@@ -50,12 +54,14 @@ def test_of_a_rotation_vector(vector):
 
 
 @given(QUATERNIONS, VECTORS)
+@example(SHORT, np.zeros(3))
+@example(LONG, np.zeros(3))
+@example(np.zeros(4), np.ones(3))
 def test_of_a_turn_after_another(q, vector):
-    if q.any():
-        alike(
-            lambda: arithmetic.turned(q, vector),
-            lambda: (Rotation.from_quat(q) * Rotation.from_rotvec(vector)).as_quat(),
-        )
+    alike(
+        lambda: arithmetic.turned(q, vector),
+        lambda: (Rotation.from_quat(q) * Rotation.from_rotvec(vector)).as_quat(),
+    )
 
 
 @given(VECTORS, st.sampled_from(["xyz", "zyx", "zxz", "yxz", "xyx"]), st.booleans())

@@ -90,7 +90,7 @@ def page(maker, one, grades):
 
 @settings(max_examples=15, deadline=None)
 @given(st.lists(notebooks(), min_size=2, max_size=4))
-def test_a_page_is_the_same_whatever_was_made_before_it(new_exporter, several):
+def test_a_page_is_the_same_whatever_was_made_before_it(new_exporter, slow, several):
     used = new_exporter()
     for one, grades in several:
         assert page(used, one, grades) == page(new_exporter(), one, grades)
@@ -118,7 +118,7 @@ def test_what_is_kept_is_bounded_and_right(texts):
 
 @settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(notebooks(), min_size=2, max_size=4))
-def test_a_page_is_the_same_whichever_process_made_its_parts(new_exporter, tmp_path, several):
+def test_a_page_is_the_same_whichever_process_made_its_parts(new_exporter, tmp_path, slow, several):
     """Two exporters stand for two processes, which make the notebooks in turn."""
     together = [new_exporter(), new_exporter()]
     for one in together:

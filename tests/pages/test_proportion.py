@@ -67,6 +67,13 @@ def test_any_json_becomes_an_output_of_its_size_or_none(output):
     assert size(made) <= untrusted.GROWS * size(output) + 100
 
 
+@pytest.mark.parametrize("count", [-1, 10**9, 1.0, True, "1", None])
+def test_what_counts_no_runs_is_left_out(count):
+    made = safe({"output_type": "execute_result", "data": {"text/plain": "0"}, "execution_count": count})
+    assert made["execution_count"] is None
+    assert safe({**made, "execution_count": 7})["execution_count"] == 7
+
+
 @pytest.mark.parametrize(
     "output",
     [

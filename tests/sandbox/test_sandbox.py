@@ -123,6 +123,13 @@ def test_scipy_and_matplotlib_are_loaded_for_those_who_use_them(sandboxed, files
                 assert shown == [loaded if given or files else "[]", "1"]
 
 
+@pytest.mark.parametrize("count", [-5, 10**10])
+def test_a_number_of_runs_that_no_notebook_may_have_is_left_out(sandbox, count):
+    with sandbox.notebook() as notebook:
+        notebook.run_cell(f"get_ipython().execution_count = {count}")
+        assert notebook.run_cell("1").execution_count is None
+
+
 def test_a_function_is_called_with_plain_data(sandbox):
     with sandbox.notebook() as notebook:
         notebook.run_cell("def double(x, times=2):\n    print('noise')\n    return x * times")

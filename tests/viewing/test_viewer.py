@@ -525,6 +525,12 @@ def test_what_is_behind_the_camera_has_no_place():
     assert np.isnan(camera.project(camera.eye + camera.back)[0]).all()
 
 
+@pytest.mark.parametrize("at, links", [(None, {"b", "c"}), (["b", "c"], {"c"}), (["a", "b"], {"b"}), (["c"], set())])
+def test_no_line_leads_out_of_the_picture(viewer, at, links):
+    ((found,), _) = drawing.draw_all([viewer], at)
+    assert {node.path.partition("/")[2] for node in found.nodes if node.path.startswith("links/")} == links
+
+
 def test_looking_at_some_things_leaves_the_others_out_of_view(viewer):
     viewer.add_frame("far", tft.translation_matrix([50, 0, 0]))
     viewer.look(at=["b", "c"])

@@ -26,10 +26,7 @@ Rotation = _Loaded()
 
 def matrix_of(q):
     """The 3x3 matrix of a quaternion x, y, z, w of any length but 0."""
-    length = _length(q)
-    if not length > 0.0:
-        return Rotation.from_quat(q).as_matrix()  # raises its own error
-    return _matrix(*(float(number) / length for number in q))
+    return _matrix(*_unit(q))
 
 
 def turn(vector):
@@ -38,10 +35,8 @@ def turn(vector):
 
 
 def turned(q, vector):
-    """x, y, z, w of the rotation of a unit quaternion, after a turn by a rotation vector given in the turned frame."""
-    length = _length(q)
-    product = np.array(_product([float(number) / length for number in q], _quaternion_of_vector(vector)))
-    return product / _length(product)
+    """x, y, z, w of the rotation of a quaternion, after a turn by a rotation vector given in the turned frame."""
+    return np.array(_unit(_product(_unit(q), _quaternion_of_vector(vector))))
 
 
 def quaternion_of_turns(angles, axes, fixed):
@@ -91,6 +86,12 @@ def angle_of(R):
     """The angle of a 3x3 matrix (radians, 0 to pi)."""
     x, y, z, w = quaternion_of(R).tolist()
     return 2 * atan2(sqrt(x * x + y * y + z * z), abs(w))
+
+
+def _unit(q):
+    """A quaternion of length 1; of one so short that its length is 0, SciPy's own error."""
+    length = _length(q)
+    return [float(number) / length for number in q] if length > 0.0 else Rotation.from_quat(q).as_quat().tolist()
 
 
 def _length(q):

@@ -116,7 +116,8 @@ def _add_sized(scene, drawing, length, at):
         if at is None or name in at:
             tips = [label.position for label in drawing.nodes[-1].labels]
             drawing.seen = np.concatenate([drawing.seen, moved(where[name], np.array(tips))])
-        if frame.parent is not None:
+        in_view = at is None or {name, frame.parent} <= {*at}  # else the line leads out of the picture
+        if frame.parent is not None and in_view:
             line = rod(where[frame.parent][:3, 3], where[name][:3, 3], 0.25 * thickness, GREY)
             drawing.nodes.append(Node(path("links", name), np.eye(4), line))
     for name, p in scene.points.items():
