@@ -20,7 +20,7 @@ from .camera import FIELD_OF_VIEW, NEAREST, VIEWS, Camera
 from .drawing import grid
 from .meshcat_commands import block, changes, delete, folder, properties, set_object, set_property, set_transform
 from .picture import webp
-from .shapes import BESIDE
+from .shapes import AROUND, NEAR
 from .shapes import path as node_path
 
 ASPECT = 1.6  # width by height of what is drawn
@@ -57,13 +57,14 @@ def _packed(data):
 
 
 def labels(nodes):
-    """Return the labels of `nodes` as the page takes them: first those that have a fixed place."""
+    """Return the labels of `nodes` as the page takes them, in the order in which they choose their places."""
     found = [
         {
             "path": f"meshcat/{node.path}",
             "text": label.text,
+            "subscript": label.subscript,
             "position": np.round(label.position, 6).tolist(),
-            "beside": label.beside,
+            "near": label.near,
             "height": label.height,
             "color": "rgb({:.0f} {:.0f} {:.0f} / {:.3g})".format(
                 *(255 * value for value in label.color[:3]), label.color[3]
@@ -72,7 +73,7 @@ def labels(nodes):
         for node in nodes
         for label in node.labels
     ]
-    return sorted(found, key=lambda label: label["beside"])
+    return sorted(found, key=lambda label: [None, *NEAR].index(label["near"]))
 
 
 def render(drawing, fixed_frame, seen_from, motion=None, states=(), live=None, carries=True):
@@ -111,7 +112,8 @@ def render(drawing, fixed_frame, seen_from, motion=None, states=(), live=None, c
         "fov": math.degrees(FIELD_OF_VIEW),
         "nearest": NEAREST,
         "labels": found,
-        "beside": BESIDE,
+        "near": NEAR,
+        "around": AROUND,
         "text": drawing.text,
     }
     scene = _packed(block([json.dumps(view).encode()]) + b"".join(blocks))
