@@ -3,7 +3,7 @@ r"""Every number and every formula in the words of the notebooks, and of convent
 - **Numbers** are compared with code by the claims in prose.txt. What no claim covers makes a test fail.
 - **Formulas** with an equality are computed as they are written, in frames at random (formulas.py).
 - **Points and minutes** in headings and openings are those of nbgrader's cells.
-- **Predictions**: the folded answer has the numbers that `predict` takes for right; what it says of wrong ones is prose like any other.
+- **Predictions**: the folded answer has the numbers that `predict` takes for right; its reasons are prose like any other.
 
 How to add a number: write a line into prose.txt, under the notebook and the cell's id, in the order of the text:
 

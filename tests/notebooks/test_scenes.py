@@ -1,4 +1,4 @@
-"""Scenes in JupyterLab as people look at them: wherever the sliders stand, by keyboard alone, in the dark, on a narrow window, on paper.
+"""Scenes in JupyterLab as people look at them: wherever the sliders stand, by keyboard, dark, in a narrow window, on paper.
 
 Screenshots go to screenshots/, to be looked at.
 """
@@ -21,6 +21,11 @@ COVERED = """() => {
   return boxes.flatMap((one, i) => boxes.slice(0, i).filter(other => one.left < other.right && other.left < one.right
     && one.top < other.bottom && other.top < one.bottom).map(other => [one.text, other.text]));
 }"""
+
+NAME = "control => control.getAttribute('aria-label') || control.labels?.[0]?.firstChild.textContent || control.textContent"
+LINES = """cells => cells.map(cell => {
+  return cell.getBoundingClientRect().height / parseFloat(getComputedStyle(cell).lineHeight);
+})"""
 
 
 @pytest.fixture(scope="module")
@@ -64,9 +69,7 @@ def test_every_control_is_reached_and_named_by_the_keyboard(page, server):
         names = []
         for number in range(controls.count()):
             assert controls.nth(number).evaluate("control => control === document.activeElement")
-            names.append(controls.nth(number).evaluate(
-                "control => control.getAttribute('aria-label') || control.labels?.[0]?.firstChild.textContent || control.textContent"
-            ))  # fmt: skip
+            names.append(controls.nth(number).evaluate(NAME))
             page.keyboard.press("Tab")
         assert all(names) and names[:2] == ["Fixed frame", "Seen from"]
 
@@ -104,10 +107,12 @@ def test_no_number_is_broken_on_a_narrow_window(page, server, width):
     points = page.locator(".jp-OutputArea-output table td:nth-child(3)")
     points.first.wait_for()
     page.screenshot(path=SCREENSHOTS / f"width_{width}.png")
-    lines = points.evaluate_all("cells => cells.map(cell => cell.getBoundingClientRect().height / parseFloat(getComputedStyle(cell).lineHeight))")
+    lines = points.evaluate_all(LINES)
     assert lines and all(height < 4 for height in lines)
-    codes = page.locator(".jp-OutputArea-output table code").evaluate_all("codes => codes.map(code => code.getClientRects().length)")
-    assert set(codes) == {1}, "a name is broken into two lines"
+    codes = page.locator(".jp-OutputArea-output table code")
+    assert set(codes.evaluate_all("codes => codes.map(code => code.getClientRects().length)")) == {1}, (
+        "a name is broken"
+    )
 
 
 def test_on_paper_the_still_pictures_are_printed(page, server):
@@ -116,6 +121,8 @@ def test_on_paper_the_still_pictures_are_printed(page, server):
     scene = notebook.scene(notebook.figures()[0])
     page.emulate_media(media="print")
     assert scene.evaluate("getComputedStyle(document.body).visibility") == "hidden"
-    assert re.match("rgba\\(0, 0, 0, 0\\)|transparent", scene.evaluate("getComputedStyle(document.body).backgroundColor"))
+    assert re.match(
+        "rgba\\(0, 0, 0, 0\\)|transparent", scene.evaluate("getComputedStyle(document.body).backgroundColor")
+    )
     page.emulate_media(media="screen")
     assert scene.evaluate("getComputedStyle(document.body).visibility") == "visible"

@@ -1,4 +1,4 @@
-"""No label of a scene covers another one: in every scene of the notebooks, wherever their sliders stand, and in scenes at random."""
+"""No label of a scene covers another one: in the notebooks' scenes, wherever their sliders stand, and in scenes at random."""
 
 import ast
 import io

@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from . import tft
-from .messages import Marker, Point
+from .messages import ColorRGBA, Marker, Point
 from .validation import numbers, rigid_transform, row_text
 from .viewing.shapes import ORANGE, PURPLE, STEEL, X_RED, Y_GREEN, Z_BLUE
 from .viewing.viewer import Viewer
@@ -58,8 +58,8 @@ def animate_rotation(rotation, names=("frame_a", "frame_b")):
 def animate_mirrors(degrees=90, point=(0.9, -0.3, 0.2)):
     """Return a Viewer in which two mirrors turn a point about z by `degrees`, twice the angle between them.
 
-    The mirrors stand on z, the first along x. `point` is 3 numbers, in metres. A quaternion holds the mirrors: w is the product of
-    their normals, number by number, and x, y, z is the cross product.
+    The mirrors stand on z, the first along x. `point` is 3 numbers, in metres. A quaternion holds the mirrors: w is the dot
+    product of their normals, and x, y, z is the cross product.
 
     Source: a turn by an angle is two reflections in planes at half that angle (Cartan and Dieudonné's theorem).
     """
@@ -106,7 +106,7 @@ def animate_determinant(matrix):
         corners = [columns @ [i >> bit & 1 for bit in range(3)] for i in range(8)]
         box = Marker(type=Marker.LINE_LIST)
         box.header.frame_id, box.pose.orientation.w, box.scale.x = "frame_a", 1.0, 0.015
-        box.color.r, box.color.g, box.color.b, box.color.a = *STEEL[:3], 1.0
+        box.color = ColorRGBA(*STEEL)
         box.points = [Point(*corners[end].tolist()) for edge in EDGES for end in edge]
         scene.publish(box)
         volume = round(float(np.linalg.det(columns)), 2) + 0.0
@@ -246,8 +246,8 @@ def animate_approach(object_pose, pre_grasp_pose, wrong_pose=None):
 def animate_journey(object_pose, stops, wrong_stops=None):
     """Return a Viewer in which a gripper goes from stop to stop; at the one that is called "grasp" it takes the object along.
 
-    `object_pose` and the poses of `stops`, {name: pose}, are Pose messages (or 4x4 transforms) in base_link. `wrong_stops`, of the
-    same names, is the journey of a mistake: an orange gripper makes it at the same time, and takes nothing along.
+    `object_pose` and the poses of `stops`, {name: pose}, are Pose messages (or 4x4 transforms) in base_link. `wrong_stops`, of
+    the same names, is the journey of a mistake: an orange gripper makes it at the same time, and takes nothing along.
 
     Raises ValueError for fewer than two stops, other names, and for what is no rigid transform.
     """

@@ -132,7 +132,7 @@ def plot_from_above(viewer, ax=None):
 
 
 def _new_axes(width, height):
-    """Return axes of a new figure. In a notebook pyplot does not know it: nothing that was interrupted or is left over there counts."""
+    """Return axes of a new figure. In a notebook pyplot does not know it: nothing that is left over there counts."""
     if shell():
         from matplotlib.figure import Figure
 

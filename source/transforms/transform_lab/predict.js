@@ -1,6 +1,6 @@
 // Turns a place for a prediction into fields or buttons, and says what an answer is worth.
 window.transformLabPredict = form => {
-  if (!form.dataset.predict) return;
+  if (!form?.dataset.predict) return;  // done already, by the script beside it
   const {right, wrong} = JSON.parse(form.dataset.predict), said = document.createElement("output");
   form.removeAttribute("data-predict");
   Object.assign(said.style, {marginLeft: "8px", whiteSpace: "pre-wrap"});

@@ -23,8 +23,8 @@ ON_PAPER = "Answer on paper, then unfold the answer below."
 def predict(answer, wrong=()):
     """Show a place to type or click an answer; it is compared in the page itself.
 
-    answer: a number; several, as a list or an array, each of which has a field of its own, to half a hundredth (of large ones, half a
-        percent); or a text, which is chosen among the `wrong` ones
+    answer: a number; several, as a list or an array, each of which has a field of its own, to half a hundredth (of large ones,
+        half a percent); or a text, which is chosen among the `wrong` ones
     wrong: {wrong answer: why it is wrong, in a sentence}; several numbers as a tuple
 
     Raises ValueError for a text without wrong ones to choose among, and for a wrong answer of another kind than `answer`.

@@ -219,7 +219,7 @@ class Scene:
         self._changed()
 
     def add_hand(self, frame=None, length=0.1):
-        """Draw a right hand on `frame`, by default the root: the index finger along x, the middle finger along y, the thumb along z.
+        """Draw a right hand on `frame`, by default the root: index finger along x, middle finger along y, thumb along z.
 
         `length` is that of these fingers, in metres.
         """

@@ -153,8 +153,8 @@ def arrow(tail, tip, color, shaft, head, head_length):
 def frame_node(name, transform, length, ghost=False, alone=True):
     """Return a Node with a frame's three axes, the letters at their tips, and its name.
 
-    A ghost is translucent and thicker, so that a solid frame at the same place is seen inside it. Where a frame is not `alone`, its
-    letters have its name as a subscript.
+    A ghost is translucent and thicker, so that a solid frame at the same place is seen inside it. Where a frame is not `alone`,
+    its letters have its name as a subscript.
     """
     solids, letters = _axes(length, ghost, "" if alone else subscript(name))
     labels = [*letters, Label(name, np.zeros(3), near="thing")]
@@ -198,7 +198,7 @@ def gripper_node(gripper, transform):
 
 
 def hand_node(hand, transform):
-    """Return a Node with a right hand at `transform`: index finger along x, middle finger along y, thumb along z; palm to the left.
+    """Return a Node with a right hand at `transform`: index finger along x, middle finger along y, thumb along z.
 
     The other two fingers are closed. Its proportions are those of a hand whose index finger is 9 cm long.
     """
