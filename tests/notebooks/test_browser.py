@@ -3,8 +3,6 @@
 The server runs under /user/x/, as behind a JupyterHub. Screenshots go to screenshots/, to be looked at.
 """
 
-import base64
-import gzip
 import io
 import re
 import shutil
@@ -19,6 +17,7 @@ from PIL import Image
 from support import ROOT, wait_for
 from transform_lab import tft
 from transform_lab.animations import between
+from transform_lab.viewing.page import packed
 
 NOTEBOOKS = [path.stem for path in sorted((ROOT / "notebooks/transforms").glob("*.ipynb"))]
 SCREENSHOTS = ROOT / "screenshots"
@@ -413,9 +412,7 @@ def test_nothing_is_run_that_others_have_left_in_the_browser(page, server):
     assert shown_in(notebook) == [3, 4]
     notebook.command("docmanager:save")
     page.goto(f"{server.url}/api")
-    evil = base64.b64encode(
-        gzip.compress(b"parent.evil = document.body.innerHTML = 'evil'; showScene = () => {}")
-    ).decode()
+    evil = packed(b"parent.evil = document.body.innerHTML = 'evil'; showScene = () => {}")
     page.evaluate("evil => Object.keys(localStorage).forEach(key => localStorage[key] = evil)", evil)
     notebook = Opened(page, server, "four", fresh=False)
     waiting(notebook, 1)

@@ -28,6 +28,7 @@ from transform_lab import (
     tft,
 )
 from transform_lab.viewing.motion import MOST_STATES, STATES, control
+from transform_lab.viewing.page import SAFE
 
 pytestmark = pytest.mark.filterwarnings("ignore:zmq.eventloop.ioloop is deprecated")  # by meshcat
 
@@ -311,7 +312,7 @@ def told(viewer):
     """What the page of a viewer is told, in words and numbers."""
     source = re.search(r'srcdoc="([^"]*)"', viewer.figure())[1]
     packed = re.search(r"showScene\(await unpacked\(`([^`]*)`", html.unescape(source))[1]
-    data = gzip.decompress(base64.b64decode(packed))
+    data = gzip.decompress(base64.b85decode(packed.translate({new: old for old, new in SAFE.items()})))
     return json.loads(data[8 : 8 + int.from_bytes(data[4:8], "big")])
 
 

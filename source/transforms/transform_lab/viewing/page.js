@@ -8,7 +8,6 @@ function showScene(buffer) {
   window.onmessage = null;  // meshcat's script leaves one that sends every message again, for making films
   const pane = document.getElementById("pane"), bar = document.getElementById("bar");
   const viewer = window.viewer = new MeshCat.Viewer(pane);
-  viewer.gui.domElement.style.display = "none";
   const resize = viewer.set_3d_pane_size.bind(viewer);
   viewer.set_3d_pane_size = () => resize(pane.clientWidth, pane.clientHeight);  // and not as high as the window
   const run = packets => packets.forEach(packet => viewer.handle_command_bytearray(packet));
@@ -194,10 +193,10 @@ function placeLabels(labels, viewer, pane, view, object) {
       along = {x: (x - before.x) / length * 2 * h, y: (y - before.y) / length * 2 * h};
       across = {x: along.y, y: -along.x};
     }
-    const candidates = (view.near[label.near] ?? [[0, 0]]).map(
+    const candidates = (PLACES.near[label.near] ?? [[0, 0]]).map(
       ([one, other]) => [x + one * along.x + other * across.x, y + one * along.y + other * across.y]);
     const preferred = candidates.length;
-    if (label.near) candidates.push(...view.around.map(([right, up]) => [x + right * 2 * h, y - up * 2 * h]));
+    if (label.near) candidates.push(...PLACES.around.map(([right, up]) => [x + right * 2 * h, y - up * 2 * h]));
     for (const [number, [placeX, placeY]] of candidates.entries()) {
       if (best.bad === 0 || number >= preferred && best.bad < 20) break;
       const place = {x: placeX, y: placeY, w, h, bad: 0};
