@@ -74,6 +74,16 @@ def test_every_control_is_reached_and_named_by_the_keyboard(page, server):
         assert all(names) and names[:2] == ["Fixed frame", "Seen from"]
 
 
+def test_the_line_below_names_the_fixed_frame_that_was_chosen(page, server):
+    notebook = Opened(page, server, "2_homogeneous_transforms")
+    notebook.run_all()
+    scene = notebook.scene(notebook.figures()[0])
+    caption = scene.frame_element().evaluate_handle("frame => frame.closest('figure').querySelector('figcaption')")
+    assert caption.inner_text().startswith("Fixed frame frame_a. Axes")
+    scene.get_by_label("Fixed frame").select_option("frame_b")
+    assert caption.inner_text().startswith("Fixed frame frame_b. Axes")
+
+
 def test_a_value_and_the_text_follow_the_arrow_keys(page, server):
     notebook = Opened(page, server, "1_rotation")
     notebook.run_all()

@@ -79,7 +79,7 @@ def test_a_chain_is_put_together_link_by_link():
     np.testing.assert_allclose(half.lookup("B", "C")[:3, 3], TILTED[:3, 3] / 2, atol=1e-9)
     end = at(viewer, 1)
     np.testing.assert_allclose(end.lookup("A", "D"), STEP @ TILTED @ STEP, atol=1e-9)
-    assert "A_T_D = A_T_B @ B_T_C @ C_T_D" in end.text
+    assert "a_T_d = a_T_b @ b_T_c @ c_T_d" in end.text
     assert f"{(STEP @ TILTED @ STEP)[0, 3]:7.3f}" in end.text
 
 
@@ -87,9 +87,9 @@ def test_an_inverse_is_the_same_frames_from_the_other_side():
     viewer = animate_inverse(TILTED)
     for moment in (0, 0.4, 0.6, 1):
         np.testing.assert_allclose(at(viewer, moment).lookup("A", "B"), TILTED, atol=1e-9)
-    np.testing.assert_allclose(at(viewer, 0).lookup("viewer", "A"), np.eye(4), atol=1e-9)
-    np.testing.assert_allclose(at(viewer, 1).lookup("viewer", "B"), np.eye(4), atol=1e-9)
-    assert "A_T_B" in at(viewer, 0).text and "B_T_A" in at(viewer, 1).text
+    np.testing.assert_allclose(at(viewer, 0).lookup("you", "A"), np.eye(4), atol=1e-9)
+    np.testing.assert_allclose(at(viewer, 1).lookup("you", "B"), np.eye(4), atol=1e-9)
+    assert "A. a_T_b" in at(viewer, 0).text and "B. b_T_a" in at(viewer, 1).text
     assert f"{np.linalg.inv(TILTED)[1, 3]:7.3f}" in at(viewer, 1).text
 
 

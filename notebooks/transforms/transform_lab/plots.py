@@ -46,7 +46,7 @@ def _show(axes):
     words = f"{axes.get_title()}. Across: {axes.get_xlabel()}. Up: {axes.get_ylabel() or 'from -1 to 1'}."
     words += f" Shown: {', '.join(name for name in names if name and not name.startswith('_'))}."
     file = io.BytesIO()
-    axes.figure.savefig(file, dpi=100, facecolor="white")
+    axes.figure.savefig(file, dpi=90, facecolor="white")
     display({"text/plain": words, "text/html": still(Image.open(file).convert("RGB"), words, "")}, raw=True)
 
 

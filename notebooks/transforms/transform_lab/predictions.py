@@ -5,6 +5,7 @@ paper. Nothing is kept and nothing is sent.
 """
 
 import json
+import re
 from functools import cache
 from html import escape
 from pathlib import Path
@@ -12,11 +13,12 @@ from pathlib import Path
 import numpy as np
 
 from .jupyter import being_graded, shell
+from .viewing.carriers import carries as has_to_carry
 
 __all__ = ["predict"]
 
-# VS Code has each output in a shadow root, in which a script does not find it: from there the output has to call the script.
-REACHED = "window.transformLabPredict?.(this.parentNode)"
+# A place hands itself to the script, which may come later, with another place; in VS Code no script finds what is in outputs.
+REACHED = "(window.transformLabPredictions ??= []).push(this.parentNode)"
 ON_PAPER = "Answer on paper, then unfold the answer below."
 
 
@@ -39,14 +41,18 @@ def predict(answer, wrong=()):
         return
     from IPython.display import display
 
-    display({"text/plain": ON_PAPER, "text/html": place(right, reasons)}, raw=True)
+    display({"text/plain": ON_PAPER, "text/html": place(right, reasons, has_to_carry("prediction"))}, raw=True)
 
 
-def place(right, wrong):
-    """The place to answer, in HTML: `right` a text or a list of numbers, `wrong` [[such an answer, why it is wrong], …]."""
+def place(right, wrong, carries=True):
+    """The place to answer, in HTML: `right` a text or a list of numbers, `wrong` [[such an answer, why it is wrong], …].
+
+    What `carries` the script has it for all places of the page.
+    """
     told = escape(json.dumps({"right": right, "wrong": wrong}))
-    here = f'<img alt="" hidden src="data:," onerror="{REACHED}">'
-    return f'<form data-predict="{told}"><em>{ON_PAPER}</em>{here}</form><script>{_script()}</script>'
+    here = f'<style onload="{REACHED}"></style>'
+    script = f"<script>{_script()}</script>" if carries else ""
+    return f'<form data-predict="{told}"><em>{ON_PAPER}</em>{here}</form>{script}'
 
 
 def _plain(answer):
@@ -56,4 +62,4 @@ def _plain(answer):
 
 @cache
 def _script():
-    return Path(__file__).with_name("predict.js").read_text(encoding="utf-8")
+    return re.sub(r"(?m)^(//.*\n)? *", "", Path(__file__).with_name("predict.js").read_text(encoding="utf-8"))

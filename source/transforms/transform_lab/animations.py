@@ -170,10 +170,10 @@ def animate_chain(*transforms, names="ABCDEFGHIJKLMNOPQRSTUVWXYZ"):
         for i, link in enumerate(links[: max(1, math.ceil(done))]):
             scene.add_frame(names[i + 1], between(np.eye(4), link, min(done - i, 1)), parent=names[i])
         last = max(1, math.ceil(done))
-        product = " @ ".join(f"{names[i]}_T_{names[i + 1]}" for i in range(last))
+        product = " @ ".join(_in_code(names[i], names[i + 1]) for i in range(last))
         if last - done > 1e-9:
             return f"{product}\n{names[last]} starts where {names[last - 1]} is, and moves along its axes"
-        whole = f"{names[0]}_T_{names[last]}"
+        whole = _in_code(names[0], names[last])
         matrix = _matrix_text(scene.lookup(names[0], names[last]))
         return f"{product if product == whole else f'{whole} = {product}'}\n{matrix}"
 
@@ -181,7 +181,7 @@ def animate_chain(*transforms, names="ABCDEFGHIJKLMNOPQRSTUVWXYZ"):
 
 
 def animate_inverse(a_T_b, names=("A", "B")):
-    """Return a Viewer with the same two frames seen from either side: first frame A is the fixed one, then frame B.
+    """Return a Viewer with the same two frames seen from either side: first you stand in frame A, then in frame B.
 
     `a_T_b` is a 4x4 transform; at first it is shown beside the frames, at the end its inverse is, b_T_a.
 
@@ -190,16 +190,16 @@ def animate_inverse(a_T_b, names=("A", "B")):
     a, b = _two(names, "animate_inverse")
     a_T_b = rigid_transform(a_T_b, "animate_inverse: the transform")
     b_T_a = tft.inverse_matrix(a_T_b)
-    viewer = Viewer("viewer", ghost=True)
+    viewer = Viewer("you", ghost=True)
 
     def change_sides(scene, moment):
         part = min(max((moment - 0.25) / 0.5, 0), 1)
         scene.add_frame(a, between(np.eye(4), b_T_a, part))
         scene.add_frame(b, a_T_b, parent=a)
         if part == 0:
-            return f"{a} is the fixed frame. {a}_T_{b}:\n{_matrix_text(a_T_b)}"
+            return f"you stand in {a}. {_in_code(a, b)}:\n{_matrix_text(a_T_b)}"
         if part == 1:
-            return f"{b} is the fixed frame. {b}_T_{a}:\n{_matrix_text(b_T_a)}"
+            return f"you stand in {b}. {_in_code(b, a)}:\n{_matrix_text(b_T_a)}"
         return f"from {a}'s side to {b}'s; how they stand to each other does not change"
 
     return viewer.animate(change_sides, seconds=6)
@@ -308,6 +308,11 @@ def _quaternion(rotation):
     if values.shape == (3, 3):
         values = np.block([[values, np.zeros((3, 1))], [np.zeros((1, 3)), 1]])
     return tft.quaternion_from_matrix(rigid_transform(values, "animate_rotation: the rotation"))
+
+
+def _in_code(target, source):
+    """The name that the transform between two frames has in code: a_T_b for A and B."""
+    return "_T_".join(name.lower() if len(name) == 1 else name for name in (target, source))
 
 
 def _matrix_text(matrix):

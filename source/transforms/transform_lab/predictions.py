@@ -5,6 +5,7 @@ paper. Nothing is kept and nothing is sent.
 """
 
 import json
+import re
 from functools import cache
 from html import escape
 from pathlib import Path
@@ -49,7 +50,7 @@ def place(right, wrong, carries=True):
     What `carries` the script has it for all places of the page.
     """
     told = escape(json.dumps({"right": right, "wrong": wrong}))
-    here = f'<img alt="" hidden src="data:," onerror="{REACHED}">'
+    here = f'<style onload="{REACHED}"></style>'
     script = f"<script>{_script()}</script>" if carries else ""
     return f'<form data-predict="{told}"><em>{ON_PAPER}</em>{here}</form>{script}'
 
@@ -61,4 +62,4 @@ def _plain(answer):
 
 @cache
 def _script():
-    return Path(__file__).with_name("predict.js").read_text(encoding="utf-8")
+    return re.sub(r"(?m)^(//.*\n)? *", "", Path(__file__).with_name("predict.js").read_text(encoding="utf-8"))

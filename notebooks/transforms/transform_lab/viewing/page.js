@@ -8,7 +8,6 @@ function showScene(buffer) {
   window.onmessage = null;  // meshcat's script leaves one that sends every message again, for making films
   const pane = document.getElementById("pane"), bar = document.getElementById("bar");
   const viewer = window.viewer = new MeshCat.Viewer(pane);
-  viewer.gui.domElement.style.display = "none";
   const resize = viewer.set_3d_pane_size.bind(viewer);
   viewer.set_3d_pane_size = () => resize(pane.clientWidth, pane.clientHeight);  // and not as high as the window
   const run = packets => packets.forEach(packet => viewer.handle_command_bytearray(packet));
@@ -101,8 +100,11 @@ function showScene(buffer) {
   };
   const first = row();
   const views = Object.keys(fixed.cameras);
+  const caption = window.frameElement?.closest("figure")?.querySelector("figcaption");
   let seenFrom = view.seenFrom;
   choice(first, "Fixed frame", view.frames.map(frame => frame.name), view.fixed, i => {
+    const named = text => text.replace(`Fixed frame ${fixed.name}. `, () => `Fixed frame ${view.frames[i].name}. `);
+    if (caption) caption.textContent = named(caption.textContent);
     fixed = view.frames[i];
     settle();
     look(seenFrom);
@@ -194,10 +196,10 @@ function placeLabels(labels, viewer, pane, view, object) {
       along = {x: (x - before.x) / length * 2 * h, y: (y - before.y) / length * 2 * h};
       across = {x: along.y, y: -along.x};
     }
-    const candidates = (view.near[label.near] ?? [[0, 0]]).map(
+    const candidates = (PLACES.near[label.near] ?? [[0, 0]]).map(
       ([one, other]) => [x + one * along.x + other * across.x, y + one * along.y + other * across.y]);
     const preferred = candidates.length;
-    if (label.near) candidates.push(...view.around.map(([right, up]) => [x + right * 2 * h, y - up * 2 * h]));
+    if (label.near) candidates.push(...PLACES.around.map(([right, up]) => [x + right * 2 * h, y - up * 2 * h]));
     for (const [number, [placeX, placeY]] of candidates.entries()) {
       if (best.bad === 0 || number >= preferred && best.bad < 20) break;
       const place = {x: placeX, y: placeY, w, h, bad: 0};

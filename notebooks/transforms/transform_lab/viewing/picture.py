@@ -22,6 +22,7 @@ LINE = 0.038  # height of a line, of the picture's height
 BOLD = "DejaVuSans-Bold.ttf"
 LARGEST = 600  # of a font; above it the picture would be all letter
 COLORS = [max(255 - (255 - value + 12) // 24 * 24, 0) for value in range(256)] * 3  # from white down
+GRID = "#d3d3d3"  # of lines as wide as a fine pixel: the pixels in which they are have the same shade of COLORS
 LIGHT = np.array([0.3, 0.2, 0.95])  # in the camera's right, up and backward directions
 
 
@@ -36,7 +37,7 @@ def render(nodes, grid, camera, text=""):
     pen = ImageDraw.Draw(image, "RGBA")
     lines = camera.project(grid)[0]
     for line in _pixels(lines[np.isfinite(lines).all(axis=(1, 2))]):
-        pen.line(line, fill="#d8dce2", width=FINE)
+        pen.line(line, fill=GRID)
     sheets = []  # of faces, with the distance at which they are painted
     for node in nodes:
         for solid in node.solids:

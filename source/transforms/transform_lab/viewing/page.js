@@ -100,8 +100,11 @@ function showScene(buffer) {
   };
   const first = row();
   const views = Object.keys(fixed.cameras);
+  const caption = window.frameElement?.closest("figure")?.querySelector("figcaption");
   let seenFrom = view.seenFrom;
   choice(first, "Fixed frame", view.frames.map(frame => frame.name), view.fixed, i => {
+    const named = text => text.replace(`Fixed frame ${fixed.name}. `, () => `Fixed frame ${view.frames[i].name}. `);
+    if (caption) caption.textContent = named(caption.textContent);
     fixed = view.frames[i];
     settle();
     look(seenFrom);
