@@ -76,7 +76,7 @@ def animate_mirrors(degrees=90, point=(0.9, -0.3, 0.2)):
 
     def reflect(scene, moment):
         done = 2 * moment
-        for i, name in enumerate(["once mirrored", "twice mirrored"][: max(1, math.ceil(done))]):
+        for i, name in enumerate(["once mirrored", "twice mirrored"][: math.ceil(done)]):
             part = min(done - i, 1)
             scene.add_point(name, (1 - part) * places[i] + part * places[i + 1], color=ORANGE if i else PURPLE)
         if moment < 1:
