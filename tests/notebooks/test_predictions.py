@@ -1,10 +1,17 @@
 """A place to answer a prediction, in a browser: what is typed or clicked, and what is said of it."""
 
+import json
+import shutil
+
+import nbformat
 import numpy as np
 import pytest
+from jupyter_lab import Opened, Server
+from support import ROOT, wait_for
 from transform_lab import predict
 from transform_lab.predictions import ON_PAPER, place
 
+NAME = "1_rotation"
 VECTOR = [2.0, -0.5, 0.0], [[[2.0, 0.5, 0.0], "y counts to the left."]]
 NUMBER = [0.70711], [[[0.5], "Half of it <b>squared</b>."]]
 TEXT = "the index finger", [["the thumb", "It points to the left now."], ["a finger", "Which?"]]
@@ -93,3 +100,60 @@ def test_what_cannot_be_asked_is_refused(answer, wrong, message):
 def test_nothing_is_said_in_a_script(capsys):
     predict([2, -0.5, 0], {(2, 0.5, 0): "y counts to the left."})
     assert capsys.readouterr().out == ""
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory):
+    running = Server(tmp_path_factory.mktemp("jupyter") / "work")
+    yield running
+    running.stop()
+
+
+@pytest.fixture(scope="module")
+def solved(run_all, tmp_path_factory):
+    """The file of a solved notebook with its outputs, and the cells (their numbers) that ask for a prediction."""
+    notebook = run_all(
+        nbformat.read(ROOT / f"source/transforms/{NAME}.ipynb", as_version=4), ROOT / "source/transforms"
+    )
+    path = tmp_path_factory.mktemp("solved") / f"{NAME}.ipynb"
+    nbformat.write(notebook, path)
+    return path, [i for i, cell in enumerate(notebook.cells) if "data-predict" in json.dumps(cell.get("outputs", []))]
+
+
+def scrolled_to(page, cell):
+    page.evaluate("i => window.jupyterapp.shell.currentWidget.content.scrollToItem(i, 'center')", cell)
+    return page.locator(f'.jp-Cell[data-windowed-list-index="{cell}"]')
+
+
+def trust(page):
+    page.evaluate(
+        "() => { for (const cell of window.jupyterapp.shell.currentWidget.content.model.cells) cell.trusted = true; }"
+    )
+
+
+def test_a_saved_notebook_without_a_kernel_answers(page, server, solved):
+    path, cells = solved
+    shutil.copy(path, server.folder / "saved.ipynb")
+    notebook = Opened(page, server, "saved")
+    server.stop_kernels()
+    trust(page)
+    for number in cells:
+        cell = scrolled_to(page, number)
+        cell.locator("form :is(input, button)").first.wait_for()
+    notebook.activate(cells[0])
+    notebook.command("notebook:delete-cell")
+    last = scrolled_to(page, cells[-1] - 1)
+    for field, number in zip(last.locator("input").all(), ("0", "0", "0", "-1"), strict=True):
+        field.fill(number)
+    last.get_by_role("button").click()
+    wait_for(lambda: last.locator("output").inner_text().startswith("✓ Yes"))
+
+
+def test_an_untrusted_copy_asks_for_an_answer_on_paper(page, server, solved):
+    path, cells = solved
+    shutil.copy(path, server.folder / "untrusted.ipynb")
+    Opened(page, server, "untrusted")
+    for number in cells:
+        cell = scrolled_to(page, number)
+        cell.get_by_text(ON_PAPER).first.wait_for()
+        assert cell.locator(":is(input, form button, output)").count() == 0

@@ -1,16 +1,10 @@
 """No label of a scene covers another one: in the notebooks' scenes, wherever their sliders stand, and in scenes at random."""
 
-import ast
-import io
-from contextlib import redirect_stdout
-from functools import cache
-
-import nbformat
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from support import ROOT
+from scenes import NOTEBOOKS, scenes
 from transform_lab import Viewer, tft
 from transform_lab.viewing import page
 from transform_lab.viewing.camera import Camera
@@ -18,29 +12,7 @@ from transform_lab.viewing.drawing import in_frame
 from transform_lab.viewing.picture import half_size, places
 from transform_lab.viewing.shapes import subscript
 
-NOTEBOOKS = sorted((ROOT / "source/transforms").glob("*.ipynb"))
 TOUCH = 0.85  # of a label's box: what is really covered by its letters
-
-
-@cache
-def scenes(path):
-    """[(cell id, Viewer)] of all scenes that a solved notebook shows."""
-    names, shown, here = {"__name__": "__main__"}, [], None
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("TRANSFORM_LAB_GRADING", "1")
-        patch.setattr(Viewer, "show", lambda viewer: shown.append((here, viewer)))
-        patch.setattr(Viewer, "description", lambda viewer: shown.append((here, viewer)) or "")  # by show_mistake
-        for cell in nbformat.read(path, as_version=4).cells:
-            if cell.cell_type != "code":
-                continue
-            here, tree = cell.id, ast.parse(cell.source)
-            last = tree.body.pop() if isinstance(tree.body[-1], ast.Expr) else None
-            with redirect_stdout(io.StringIO()):
-                exec(compile(tree, here, "exec"), names)
-                value = last and eval(compile(ast.Expression(last.value), here, "eval"), names)
-            if isinstance(value, Viewer):
-                shown.append((here, value))
-    return shown
 
 
 def covered(drawing, fixed_frame, camera):

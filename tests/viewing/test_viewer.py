@@ -841,3 +841,22 @@ def test_without_webgl_the_picture_remains(viewer, dom):
     with_webgl = dom(viewer.html(), *SOFTWARE_WEBGL)
     assert "<iframe" in with_webgl
     assert Image.open(io.BytesIO(base64.b64decode(re.search(PICTURE, elements)[1]))).width > 700
+
+
+def test_a_hand_is_a_right_hand_along_the_axes_of_its_frame():
+    viewer = Viewer("a")
+    viewer.add_frame("b", tft.rotation_matrix(0.7, [1, 2, 3]), length=0.1)
+    viewer.add_hand("b", length=0.1)
+    node = next(node for node in drawn(viewer).nodes if node.path == "hands/b")
+    np.testing.assert_allclose(node.transform, viewer.lookup("a", "b"))
+    tips = np.array([solid.matrix[:3, 3] for solid in node.solids if solid.kind == "sphere"])
+    index, middle, thumb = tips[np.argmax(tips, axis=0)]
+    for tip, axis in zip(
+        (index, middle, thumb), np.eye(3)
+    ):  # each straight along its axis, and no longer than the axis
+        assert tip @ axis > 0.08 and tip @ axis < 0.1
+        np.testing.assert_allclose(tip * (1 - axis), 0, atol=1e-12)
+    wrist = min((solid.matrix[:3, 3] for solid in node.solids), key=lambda place: place[0])
+    assert wrist[0] < -0.1  # behind the fingers
+    with pytest.raises(ValueError, match="c"):
+        viewer.add_hand("c")
