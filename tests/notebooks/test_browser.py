@@ -443,6 +443,16 @@ def test_an_untrusted_copy_shows_the_pictures(page, server):
     page.screenshot(path=SCREENSHOTS / "untrusted.png")
 
 
+@pytest.mark.parametrize("name", ["glossary", "card", "conventions"])
+def test_a_page_of_words_opens_as_it_is_read(page, server, name):
+    Opened(page, server, "1_rotation")
+    page.locator(f'.jp-Notebook a[href*="{name}.md"]').first.click()
+    shown = page.locator(".jp-MarkdownViewer")
+    shown.locator("table td").first.wait_for()
+    SCREENSHOTS.mkdir(exist_ok=True)
+    page.screenshot(path=SCREENSHOTS / f"{name}.png")
+
+
 def test_notebook_7(page, server):
     notebook = Opened(page, server, "2_homogeneous_transforms", at="notebooks")
     notebook.run_all()
