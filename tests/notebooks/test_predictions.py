@@ -68,6 +68,14 @@ def test_each_field_has_a_name_and_what_is_said_is_read_out(page):
     assert page.locator("output").get_attribute("aria-live") == "polite"
 
 
+def test_numbers_are_called_what_they_are(page):
+    page.set_content(place([1.0, 0.5, 90.0], [], ["forward", "left", "degrees"]))
+    for name, number in (("forward", "1"), ("left", "0"), ("degrees", "90")):
+        page.get_by_label(name, exact=True).fill(number)
+    page.get_by_role("button").click()
+    assert page.locator("output").inner_text() == "✗ forward and degrees are right, the rest is not yet."
+
+
 def test_two_on_one_page_do_not_disturb_each_other(page):
     page.set_content(place(*VECTOR) + place(*TEXT) + place(*NUMBER))
     assert page.locator("form").count() == 3 and page.locator("input").count() == 4
@@ -90,6 +98,7 @@ def test_without_scripts_an_answer_on_paper_is_asked_for(browser):
         ("left", {(1, 2): "no"}, "another kind"),
         ([1, 2, 3], {(1, 2): "no"}, "another kind"),
         (np.eye(3)[0], {"left": "no"}, "another kind"),
+        (range(5), {}, "5 numbers need as many names"),
     ],
 )
 def test_what_cannot_be_asked_is_refused(answer, wrong, message):
@@ -118,6 +127,13 @@ def solved(run_all, tmp_path_factory):
     path = tmp_path_factory.mktemp("solved") / f"{NAME}.ipynb"
     nbformat.write(notebook, path)
     return path, [i for i, cell in enumerate(notebook.cells) if "data-predict" in json.dumps(cell.get("outputs", []))]
+
+
+def test_the_first_two_of_a_notebook_carry_the_script(solved):
+    path, cells = solved
+    every = nbformat.read(path, as_version=4).cells
+    shown = [output.data["text/html"] for i in cells for output in every[i].outputs]
+    assert len(shown) > 10 and ["<script>" in html for html in shown] == [True, True] + [False] * (len(shown) - 2)
 
 
 def scrolled_to(page, cell):

@@ -24,9 +24,7 @@ __all__ = [
     "animate_retelling",
     "animate_rotation",
 ]
-EDGES = [
-    (i, i | bit) for i in range(8) for bit in (1, 2, 4) if not i & bit
-]  # of a cube whose corners are numbered in binary
+EDGES = [(i, i | bit) for i in range(8) for bit in (1, 2, 4) if not i & bit]  # of a cube, its corners counted in binary
 
 
 def animate_rotation(rotation, names=("frame_a", "frame_b")):
@@ -76,7 +74,7 @@ def animate_mirrors(degrees=90, point=(0.9, -0.3, 0.2)):
 
     def reflect(scene, moment):
         done = 2 * moment
-        for i, name in enumerate(["once mirrored", "twice mirrored"][: max(1, math.ceil(done))]):
+        for i, name in enumerate(["once mirrored", "twice mirrored"][: math.ceil(done)]):
             part = min(done - i, 1)
             scene.add_point(name, (1 - part) * places[i] + part * places[i + 1], color=ORANGE if i else PURPLE)
         if moment < 1:

@@ -1,7 +1,7 @@
 // Turns a place for a prediction into fields or buttons, and says what an answer is worth.
 {
   const makePlace = form => {
-    const {right, wrong} = JSON.parse(form.dataset.predict), said = document.createElement("output");
+    const {right, wrong, names} = JSON.parse(form.dataset.predict), said = document.createElement("output");
     Object.assign(said.style, {marginLeft: "8px", whiteSpace: "pre-wrap"});
     said.setAttribute("aria-live", "polite");
     const say = (good, words) => {
@@ -32,7 +32,7 @@
       return top === undefined ? NaN : top / (below ?? 1);
     };
     const close = (one, other) => Math.abs(one - other) <= 0.00501 * Math.max(1, Math.abs(other));
-    const names = right.length === 1 ? [""] : ["x", "y", "z", "w"];
+    if (right.length === 1) names[0] = "";
     const fields = right.map((_, i) => {
       const field = Object.assign(document.createElement("input"), {size: 6, autocomplete: "off", inputMode: "text"});
       field.setAttribute("aria-label", names[i] || "your answer");
@@ -42,7 +42,7 @@
     const tell = Object.assign(button("Is it so?"), {type: "submit"});  // so that Enter in any field is a click on it
     tell.onclick = () => {
       const given = fields.map(field => number(field.value)), good = given.map((value, i) => close(value, right[i]));
-      const found = names.filter((_, i) => good[i]);
+      const found = names.filter((name, i) => name && good[i]);
       const unread = given.findIndex(Number.isNaN);
       const known = wrong.find(([numbers]) => numbers.every((value, i) => close(given[i], value)));
       if (unread >= 0) say(false, `Write a number${names[unread] && ` for ${names[unread]}`}, such as -0.5.`);

@@ -22,14 +22,16 @@ REACHED = "(window.transformLabPredictions ??= []).push(this.parentNode)"
 ON_PAPER = "Answer on paper, then unfold the answer below."
 
 
-def predict(answer, wrong=()):
+def predict(answer, wrong=(), names="xyzw"):
     """Show a place to type or click an answer; it is compared in the page itself.
 
     answer: a number; several, as a list or an array, each of which has a field of its own, to half a hundredth (of large ones,
         half a percent); or a text, which is chosen among the `wrong` ones
     wrong: {wrong answer: why it is wrong, in a sentence}; several numbers as a tuple
+    names: those of several numbers
 
-    Raises ValueError for a text without wrong ones to choose among, and for a wrong answer of another kind than `answer`.
+    Raises ValueError for a text without wrong ones to choose among, for a wrong answer of another kind than `answer`, and for
+    numbers without names.
     """
     right, reasons = _plain(answer), [[_plain(given), reason] for given, reason in dict(wrong).items()]
     if isinstance(right, str) and not reasons:
@@ -37,19 +39,21 @@ def predict(answer, wrong=()):
     for given, _ in reasons:
         if isinstance(given, str) != isinstance(right, str) or len(given) != len(right) and not isinstance(right, str):
             raise ValueError(f"predict: the wrong answer {given!r} is of another kind than {right!r}")
+    if not isinstance(right, str) and len(right) > len(names):
+        raise ValueError(f"predict: {len(right)} numbers need as many names; got {', '.join(names)}")
     if shell() is None or being_graded():
         return
     from IPython.display import display
 
-    display({"text/plain": ON_PAPER, "text/html": place(right, reasons, has_to_carry("prediction"))}, raw=True)
+    display({"text/plain": ON_PAPER, "text/html": place(right, reasons, names, has_to_carry("prediction"))}, raw=True)
 
 
-def place(right, wrong, carries=True):
+def place(right, wrong, names="xyzw", carries=True):
     """The place to answer, in HTML: `right` a text or a list of numbers, `wrong` [[such an answer, why it is wrong], …].
 
     What `carries` the script has it for all places of the page.
     """
-    told = escape(json.dumps({"right": right, "wrong": wrong}))
+    told = escape(json.dumps({"right": right, "wrong": wrong, "names": [*names]}, ensure_ascii=False))
     here = f'<style onload="{REACHED}"></style>'
     script = f"<script>{_script()}</script>" if carries else ""
     return f'<form data-predict="{told}"><em>{ON_PAPER}</em>{here}</form>{script}'

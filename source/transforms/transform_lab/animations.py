@@ -24,9 +24,7 @@ __all__ = [
     "animate_retelling",
     "animate_rotation",
 ]
-EDGES = [
-    (i, i | bit) for i in range(8) for bit in (1, 2, 4) if not i & bit
-]  # of a cube whose corners are numbered in binary
+EDGES = [(i, i | bit) for i in range(8) for bit in (1, 2, 4) if not i & bit]  # of a cube, its corners counted in binary
 
 
 def animate_rotation(rotation, names=("frame_a", "frame_b")):
