@@ -682,6 +682,8 @@ import transform_lab as lab
 T = np.eye(4)
 v = lab.Viewer(); v.add_point('p', (1, 2, 3))
 shown = [v, lab.animate_rotation(T), lab.animate_chain(T, T), lab.animate_inverse(T), lab.animate_approach(T, T, T)]
+shown += [lab.animate_mirrors(), lab.animate_determinant(T[:3, :3]), lab.animate_retelling(T, T, [1, 2, 3])]
+shown += [lab.animate_journey(T, {'pre-grasp': T, 'grasp': T})]
 shown.append(lab.Viewer().interact(lambda scene, x: None, x=(0, 1)))
 assert all(list(viewer._repr_mimebundle_()) == ['text/plain'] for viewer in shown)
 assert lab.plot_columns(T) is lab.plot_quaternion() is lab.plot_from_above(v) is None
