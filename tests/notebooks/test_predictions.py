@@ -69,7 +69,8 @@ def test_each_field_has_a_name_and_what_is_said_is_read_out(page):
 
 
 def test_numbers_are_called_what_they_are(page):
-    page.set_content(place([1.0, 0.5, 90.0], [], ["forward", "left", "degrees"]))
+    page.set_content(place([1.0, 0.5, 90.0], [], "The settings", ["forward", "left", "degrees"]))
+    assert page.locator("form").inner_text().startswith("The settings:")
     for name, number in (("forward", "1"), ("left", "0"), ("degrees", "90")):
         page.get_by_label(name, exact=True).fill(number)
     page.get_by_role("button").click()
@@ -87,7 +88,7 @@ def test_without_scripts_an_answer_on_paper_is_asked_for(browser):
     context = browser.new_context(java_script_enabled=False)
     page = context.new_page()
     page.set_content(place(*VECTOR))
-    assert page.inner_text("body").strip() == ON_PAPER
+    assert page.inner_text("body").strip() == f"Your answer: {ON_PAPER}"
     context.close()
 
 

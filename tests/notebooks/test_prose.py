@@ -199,7 +199,7 @@ def notebook(name):
     names, after, printed, predicted, waiting, cells = {"__name__": "__main__"}, {}, {}, {}, [], []
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("TRANSFORM_LAB_GRADING", "1")  # nothing is drawn
-        patch.setattr(transform_lab, "predict", lambda answer, wrong=(), names="": asked.append((answer, dict(wrong))))
+        patch.setattr(transform_lab, "predict", lambda answer, wrong=(), **told: asked.append((answer, dict(wrong))))
         for cell in book.cells:
             if cell.cell_type == "markdown":
                 waiting.append(Cell(cell.id, cell.source))

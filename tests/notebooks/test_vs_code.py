@@ -94,7 +94,7 @@ def test_a_folder_that_is_not_trusted_shows_their_texts(scenes):
 def test_predictions_are_answered_whichever_is_shown_first(outputs, shadow):
     for answer, carries in (([1.0], False), ([2.0], True), ([3.0], False), ([4.0], True), ([5.0], False)):
         outputs.evaluate("([html, shadow]) => show(html, shadow)", [place(answer, [], carries=carries), shadow])
-    fields = outputs.get_by_label("your answer")
+    fields = outputs.get_by_label("Your answer")
     fields.nth(4).wait_for()
     for number in range(5):
         fields.nth(number).fill(str(number + 1))

@@ -1,6 +1,7 @@
-"""Poses as matrices and back, under the names that they have on a robot: `numpify` and `msgify` of ros_numpy (ROS 2: ros2_numpy).
+"""Poses as matrices and back, under the names that they have on a robot with ROS 1: `numpify` and `msgify` of ros_numpy.
 
-Given from notebook 3 on. In notebook 2 these are exercises, and there they refuse.
+Given from notebook 3 on. In notebook 2 these are exercises, and there they refuse. With ROS 2, take these: ros2_numpy 0.0.5 hands
+the quaternion to a library that reads w first, and a pose comes out turned (findings/ros2_numpy_turns_a_pose.sh).
 
 Source: the README of ros_numpy, in which a Pose is "the homogeneous transformation matrix from the origin".
 """

@@ -1,7 +1,7 @@
 // Turns a place for a prediction into fields or buttons, and says what an answer is worth.
 {
   const makePlace = form => {
-    const {right, wrong, names} = JSON.parse(form.dataset.predict), said = document.createElement("output");
+    const {right, wrong, ask, names} = JSON.parse(form.dataset.predict), said = document.createElement("output");
     Object.assign(said.style, {marginLeft: "8px", whiteSpace: "pre-wrap"});
     said.setAttribute("aria-live", "polite");
     const say = (good, words) => {
@@ -15,7 +15,7 @@
     form.onsubmit = () => false;
     if (typeof right === "string") {
       const choices = [right, ...wrong.map(([given]) => given)].sort((a, b) => a.localeCompare(b, "en", {numeric: true}));
-      form.replaceChildren(...choices.map(choice => {
+      form.replaceChildren(`${ask}:`, ...choices.map(choice => {
         const made = button(choice);
         made.onclick = () => {
           for (const other of form.querySelectorAll("button")) other.setAttribute("aria-pressed", other === made);
@@ -35,7 +35,7 @@
     if (right.length === 1) names[0] = "";
     const fields = right.map((_, i) => {
       const field = Object.assign(document.createElement("input"), {size: 6, autocomplete: "off", inputMode: "text"});
-      field.setAttribute("aria-label", names[i] || "your answer");
+      field.setAttribute("aria-label", names[i] || ask);
       field.style.font = "inherit";
       return field;
     });
@@ -52,7 +52,7 @@
       else say(false, no);
       return false;
     };
-    form.replaceChildren(...fields.flatMap((field, i) => names[i] ? [names[i], field] : [field]), tell, said);
+    form.replaceChildren(`${ask}:`, ...fields.flatMap((field, i) => names[i] ? [names[i], field] : [field]), tell, said);
   };
   const waiting = window.transformLabPredictions ?? [];
   window.transformLabPredictions = {push: makePlace, forEach: () => {}};

@@ -19,15 +19,16 @@ __all__ = ["predict"]
 
 # A place hands itself to the script, which may come later, with another place; in VS Code no script finds what is in outputs.
 REACHED = "(window.transformLabPredictions ??= []).push(this.parentNode)"
-ON_PAPER = "Answer on paper, then unfold the answer below."
+ON_PAPER = "answer on paper, then unfold the answer below."
 
 
-def predict(answer, wrong=(), names="xyzw"):
+def predict(answer, wrong=(), ask="Your answer", names="xyzw"):
     """Show a place to type or click an answer; it is compared in the page itself.
 
     answer: a number; several, as a list or an array, each of which has a field of its own, to half a hundredth (of large ones,
         half a percent); or a text, which is chosen among the `wrong` ones
     wrong: {wrong answer: why it is wrong, in a sentence}; several numbers as a tuple
+    ask: what the place is for, a few words before it
     names: those of several numbers
 
     Raises ValueError for a text without wrong ones to choose among, for a wrong answer of another kind than `answer`, and for
@@ -45,18 +46,19 @@ def predict(answer, wrong=(), names="xyzw"):
         return
     from IPython.display import display
 
-    display({"text/plain": ON_PAPER, "text/html": place(right, reasons, names, has_to_carry("prediction"))}, raw=True)
+    shown = place(right, reasons, ask, names, has_to_carry("prediction"))
+    display({"text/plain": f"{ask}: {ON_PAPER}", "text/html": shown}, raw=True)
 
 
-def place(right, wrong, names="xyzw", carries=True):
+def place(right, wrong, ask="Your answer", names="xyzw", carries=True):
     """The place to answer, in HTML: `right` a text or a list of numbers, `wrong` [[such an answer, why it is wrong], …].
 
     What `carries` the script has it for all places of the page.
     """
-    told = escape(json.dumps({"right": right, "wrong": wrong, "names": [*names]}, ensure_ascii=False))
+    told = escape(json.dumps({"right": right, "wrong": wrong, "ask": ask, "names": [*names]}, ensure_ascii=False))
     here = f'<style onload="{REACHED}"></style>'
     script = f"<script>{_script()}</script>" if carries else ""
-    return f'<form data-predict="{told}"><em>{ON_PAPER}</em>{here}</form>{script}'
+    return f'<form data-predict="{told}"><em>{escape(ask)}: {ON_PAPER}</em>{here}</form>{script}'
 
 
 def _plain(answer):

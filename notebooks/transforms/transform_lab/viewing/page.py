@@ -175,7 +175,7 @@ def over_picture(page, picture, description, caption, rows, carries=True):
         '<figure style="margin: 0; max-width: 760px">'
         f'<div style="position: relative; aspect-ratio: {ASPECT:g}; background: white; margin-bottom: {rows * ROW}px">'
         f"{_image(picture, description)}"
-        f'<iframe srcdoc="{html.escape(page)}" title="{html.escape(caption)}" loading="{"eager" if carries else "lazy"}"'
+        f'<iframe srcdoc="{html.escape(page)}" title="The scene, to be turned" loading="{"eager" if carries else "lazy"}"'
         f' style="position: absolute; left: 0; top: 0; width: 100%; height: calc(100% + {rows * ROW}px); border: 0"></iframe>'
         f"</div><figcaption>{html.escape(caption)}</figcaption></figure>"
     )

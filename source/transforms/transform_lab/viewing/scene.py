@@ -281,7 +281,7 @@ class Scene:
     def path(self, target_frame, source_frame):
         """Return the names of the frames on the way in the tree from `target_frame` to `source_frame`, both among them.
 
-        It leads down from the target to their common ancestor, and up to the source, as TF's look-ups do.
+        It leads from the target to their common ancestor, and from there to the source.
         Raises ValueError for a frame that is not known.
         """
         scene = self.state()
