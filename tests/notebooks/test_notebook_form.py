@@ -73,6 +73,7 @@ def test_a_prediction_can_be_answered_before_it_is_unfolded(path):
             answered = next(
                 i for i, after in enumerate(following) if re.search(r"^predict\(", after.source, re.MULTILINE)
             )
+            assert following[answered].metadata.jupyter.source_hidden, f"{cell.id}: the answer stands in the open code"
             assert "<details>" not in "".join(after.source for after in following[:answered]), cell.id
             assert "**Predict.**" not in "".join(after.source for after in following[:answered]), cell.id
 

@@ -15,7 +15,7 @@ from transform_lab.viewing.shapes import rgba, xyz
 
 SEES = re.compile(
     r"(towards|away from) you\b|(seen from|from) above[,;]|From above|seen from behind|in the picture|out of sight"
-    r"|\b(pale|strong|orange|grey|yellow|thick)\b|\bthe corner\b",
+    r"|\b(pale|strong|orange|grey|yellow|thick)\b|\bthe corner\b|\bparallel\b",
     re.IGNORECASE,
 )
 OF_NO_PICTURE = [
@@ -47,6 +47,12 @@ class Picture:
         """Above zero where the way from one direction of the fixed frame to another is counterclockwise in the picture."""
         origin, *tips = (self.place(self.scene.fixed_frame, position) for position in (np.zeros(3), one, other))
         return float(np.linalg.det(np.array(tips) - origin))
+
+    def slope(self, name):
+        """How steeply an arrow rises in the picture, in degrees."""
+        arrow = self.scene.arrows[name]
+        right, up = self.place(arrow.frame, arrow.tip) - self.place(arrow.frame, arrow.tail)
+        return float(np.degrees(np.arctan2(up, right)))
 
     def marker(self):
         return next(iter(self.scene.markers.values())).marker
@@ -128,6 +134,9 @@ SAID = {
         ("a yellow arrow from A's origin", "demo-arrow", lambda p: colored(rgba(p.marker().color, ""), 1, 1, 0)),
         ("the yellow arrow ends at the tip of the red axis", "demo-arrow",
          lambda p: np.allclose(p.place("frame_b", X), p.place("frame_a", xyz(p.marker().points[1], ""))))],
+    ("2_homogeneous_transforms", "directions-unfold"): [
+        ("below one arrow starts at A's origin and one at B's. They are parallel.", "directions-view",
+         lambda p: abs(p.slope("the direction, from A") - p.slope("the same, from B")) < 6)],
     ("2_homogeneous_transforms", "mistakes"): [
         ("The pale frame, or point, is where it should be.", cell, mistake(name))
         for cell, name in (("mistake-order", "frame_b"), ("mistake-zero", "p"), ("mistake-position", "frame_b"))],

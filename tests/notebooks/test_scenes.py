@@ -8,6 +8,7 @@ import re
 import pytest
 from jupyter_lab import Opened, Server
 from support import ROOT, wait_for
+from transform_lab import Viewer
 
 NOTEBOOKS = [path.stem for path in sorted((ROOT / "notebooks/transforms").glob("*.ipynb"))]
 SCREENSHOTS = ROOT / "screenshots"
@@ -137,3 +138,25 @@ def test_on_paper_the_still_pictures_are_printed(page, server):
     )
     page.emulate_media(media="screen")
     assert scene.evaluate("getComputedStyle(document.body).visibility") == "visible"
+
+
+def test_of_many_scenes_those_that_are_looked_at_are_alive(page):
+    """A browser lets the oldest scene go when there are some sixteen of them on one page."""
+    viewer = Viewer("frame_a", length=1.0)
+    page.set_content("<style>figure { height: 600px }</style>" + viewer.figure() * 20)
+    places = page.locator("iframe")
+
+    def alive(number):
+        frame = places.nth(number).element_handle().content_frame()
+        return frame and frame.evaluate(
+            "() => window.viewer && document.body.className && document.body.style.visibility !== 'hidden'"
+            " && !viewer.renderer.getContext().isContextLost()"
+        )
+
+    for number in range(20):
+        places.nth(number).scroll_into_view_if_needed()
+        wait_for(lambda: alive(number))
+    assert not alive(0)
+    for number in (0, 1, 19):
+        places.nth(number).scroll_into_view_if_needed()
+        wait_for(lambda: alive(number))

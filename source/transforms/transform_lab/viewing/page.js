@@ -10,6 +10,7 @@ function showScene(buffer) {
   const viewer = window.viewer = new MeshCat.Viewer(pane);
   const resize = viewer.set_3d_pane_size.bind(viewer);
   viewer.set_3d_pane_size = () => resize(pane.clientWidth, pane.clientHeight);  // and not as high as the window
+  pane.querySelector("canvas").addEventListener("webglcontextlost", beginAnewWhenSeenAgain);
   const run = packets => packets.forEach(packet => viewer.handle_command_bytearray(packet));
   const object = path => viewer.scene_tree.find(path.split("/")).object;
   run(base);
@@ -214,6 +215,21 @@ function placeLabels(labels, viewer, pane, view, object) {
     style.transform = `translate(${best.x - w}px, ${best.y - h}px)`;
     if (!outside) taken.push({...best, bad: 20});
   }
+}
+
+// A browser keeps some sixteen scenes alive. One that it has let go shows its still picture until somebody comes back to it;
+// one that is looked at meanwhile begins anew at once, but not twice, or they would push out each other for ever.
+function beginAnewWhenSeenAgain() {
+  const frame = window.frameElement;
+  let away = false;
+  document.body.style.visibility = "hidden";
+  if (frame) new IntersectionObserver(([{isIntersecting}]) => {
+    if (isIntersecting && (away || !frame.dataset.again)) {
+      frame.dataset.again = true;
+      frame.srcdoc += "";
+    }
+    away ||= !isIntersecting;
+  }).observe(document.body);
 }
 
 // Play, pause, and a slider that shows the way from the first state to the last.
