@@ -10,7 +10,7 @@ import numpy as np
 
 from .shapes import AROUND, NEAR, moved
 
-HEIGHT = 495  # pixels
+HEIGHT = 475  # pixels: as large as it is shown at most
 FINE = 2  # times as many pixels in each direction are painted first, so that edges are smooth
 NAME, SUBSCRIPT, WORDS = 15, 11, 14  # height of letters: of names, and of the text in the corner
 CAPITAL = 0.72  # of its font's size: the height of a capital letter
