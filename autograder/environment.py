@@ -11,6 +11,9 @@ from contextlib import suppress
 from pathlib import Path
 
 OLDEST = (3, 11)
+# JupyterLab's settings in an environment: a page in Markdown, such as the glossary, opens as one reads it.
+LAB_SETTINGS = "etc/jupyter/labconfig/default_setting_overrides.json"
+READ_MARKDOWN = {"@jupyterlab/docmanager-extension:plugin": {"defaultViewers": {"markdown": "Markdown Preview"}}}
 
 
 def suits(root):

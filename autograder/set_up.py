@@ -7,6 +7,7 @@ set-up that failed or was interrupted is repaired by the next command.
 
 import fcntl
 import hashlib
+import json
 import os
 import platform
 import re
@@ -17,7 +18,7 @@ import time
 from collections import Counter
 from pathlib import Path
 
-from .environment import OLDEST, lacking, normal, pins
+from .environment import LAB_SETTINGS, OLDEST, READ_MARKDOWN, lacking, normal, pins
 
 # What environment.lock is for, as pyproject.toml says it to uv.
 NEWEST_LOCKED = (3, 14)
@@ -91,6 +92,8 @@ def make(root):
         ) from None
     except KeyboardInterrupt:
         raise SetupFailed("The set-up was interrupted; the next command starts over.") from None
+    (folder / LAB_SETTINGS).parent.mkdir(parents=True, exist_ok=True)
+    (folder / LAB_SETTINGS).write_text(json.dumps(READ_MARKDOWN))
     stamp.write_text(digest)
     _say(f"  done in {time.monotonic() - started:.0f} s")
     return python

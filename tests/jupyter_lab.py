@@ -134,5 +134,5 @@ class Opened:
 def drawn(place):
     """Return the frame at `place` (an iframe) once its scene is drawn."""
     frame = place.element_handle().content_frame()
-    frame.wait_for_function("() => window.viewer && document.body.style.background === 'white'")
+    frame.wait_for_function("() => window.viewer && document.body.className")
     return frame

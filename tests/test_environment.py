@@ -116,6 +116,7 @@ def test_it_is_made_anew_when_it_is_not_whole(root, tmp_path_factory, spoil):
         root = root.rename(tmp_path_factory.mktemp("elsewhere") / "course")
     assert prefix(set_up.make(root)) == str(root / ".venv")
     assert not (root / ".venv" / "mark").exists()
+    assert "Markdown Preview" in (root / ".venv" / environment.LAB_SETTINGS).read_text()
 
 
 def test_a_failed_set_up_says_what_to_do_and_is_repaired(root, tools):

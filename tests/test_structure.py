@@ -15,7 +15,7 @@ ROOMS = {
         "messages validation jupyter",
         "tft lab_markers visualization_msgs",
         "viewing",
-        "judging rospy animations plots",
+        "judging rospy animations plots conversions predictions",
         "cells",
         "outdated",
         "check mistakes",

@@ -68,7 +68,7 @@ IN_RADIANS = (
 )
 THE_OTHER_WAY_ROUND = (
     "Your frame turns the other way round: a sign is wrong, B's axes stand in the rows of your matrix, or a library's function "
-    "has the passive convention (it tells how coordinates change, and not how the frame is turned).",
+    "gives the matrix of the way back, `b_R_a`.",
     "For a small positive angle, where does B's x axis point in A? That is the first column.",
 )
 TRUNCATED = (

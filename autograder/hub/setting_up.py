@@ -14,7 +14,7 @@ from pathlib import Path
 
 from ..bridge.nbgrader_api import exchange
 from ..course import Course, CourseError
-from ..environment import installed, lacking
+from ..environment import LAB_SETTINGS, READ_MARKDOWN, installed, lacking
 from ..files import replace
 
 EXCHANGE = Path("/srv/nbgrader/exchange")
@@ -92,6 +92,7 @@ def _files(hub):
         everybody / "labconfig/page_config.json", "nor does their Lab show one, and they cannot switch it on there",
         {"disabledExtensions": disabled, "lockedExtensions": disabled},
     )  # fmt: skip
+    yield _json(hub.environment / LAB_SETTINGS, "and it opens the glossary as one reads it", READ_MARKDOWN)
     text = f"{OURS}\nc = get_config()  # noqa: F821\nc.CourseDirectory.root = {json.dumps(str(hub.course.root.resolve()))}\n"
     yield _python(hub.instructors / "nbgrader_config.py", text, "for instructors: where the course is")
     server = {

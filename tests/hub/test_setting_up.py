@@ -7,7 +7,7 @@ import stat
 
 import pytest
 from jupyter_server.extension.config import ExtensionConfigManager
-from jupyterlab_server.config import get_page_config
+from jupyterlab_server.config import ConfigManager, get_page_config
 from nbgrader.apps.baseapp import NbGrader
 from nbgrader.exchange.default import Exchange
 from support import run
@@ -26,6 +26,11 @@ def hub(draft, tmp_path):
     (tmp_path / "env/bin").mkdir(parents=True)
     (tmp_path / "env/bin/python").touch(mode=0o755)
     return setting_up.hub(draft, tmp_path / "env", tmp_path / "instructors", tmp_path / "srv/exchange")
+
+
+def lab_settings():
+    """What Lab takes for its own settings until somebody chooses others."""
+    return ConfigManager(config_dir_name="labconfig").get("default_setting_overrides")
 
 
 def set_up(hub):
@@ -59,6 +64,7 @@ def as_read(hub, monkeypatch):
             "exchange": Exchange(config=app.config, coursedir=app.coursedir).root,
             "course": app.coursedir.course_id,
             "root": app.coursedir.root,
+            "markdown": lab_settings().get("@jupyterlab/docmanager-extension:plugin", {}).get("defaultViewers"),
             "fetches": app.config.ExchangeFactory.fetch_feedback.__name__,
         }
 
@@ -70,6 +76,7 @@ def test_what_students_and_instructors_get(hub, as_read):
     everybody = hub.environment / "etc/jupyter"
     students, instructors = as_read(everybody), as_read(hub.instructors, everybody)
     shared = {"exchange": str(hub.exchange), "course": "transforms", "fetches": "FetchFeedback"}
+    shared |= {"markdown": {"markdown": "Markdown Preview"}}
     assert students == shared | {
         "disabled": set(OF_INSTRUCTORS), "locked": set(OF_INSTRUCTORS), "formgrader": False, "root": os.getcwd(),
     }  # fmt: skip
@@ -104,10 +111,12 @@ BREAKING = {
 
 
 def _changed(text):
-    return text.replace("true", "0").replace("false", "1").replace("root = ", "root = '/elsewhere' or ")
+    for before, after in (("true", "0"), ("false", "1"), ("Preview", "Editor"), ("root = ", "root = '/elsewhere' or ")):
+        text = text.replace(before, after)
+    return text
 
 
-@pytest.mark.parametrize("number", range(8))
+@pytest.mark.parametrize("number", range(9))
 @pytest.mark.parametrize("how", BREAKING)
 def test_what_somebody_has_changed_is_told_and_mended(hub, number, how):
     set_up(hub)

@@ -1,5 +1,6 @@
 """The last cell of a notebook, and the pictures of mistakes: as text, as HTML, and with what students do to them."""
 
+import json
 import re
 
 import numpy as np
@@ -48,10 +49,28 @@ def test_each_exercise_is_looked_at_anew(shell):
     asked = len(ASKED["1_rotation"].points)
     so_far = f"1 of {asked} exercises, 2 of {points('1_rotation'):g} points"
     assert lines[asked] == f"Right so far: {so_far}. Grading uses other numbers."
-    assert "hand in the file 1_rotation.ipynb under this name" in lines[-1]
+    assert "hand in the file 1_rotation.ipynb under this name" in lines[-2]
+    assert lines[-1].startswith(f"The course: 1 rotation 1 of {asked}, 2 homogeneous transforms 0 of ")
     assert [re.sub("<.*?>", "", row)[0] for row in re.findall("<tr><td>.*?</tr>", html)] == [
         "✓", "✗", *["…"] * (asked - 2)
     ]  # fmt: skip
+
+
+def test_the_map_says_what_was_saved_of_the_other_notebooks(shell, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    done = [
+        {"cell_type": "code", "outputs": [{"data": {"text/plain": f"{name}: all right."}}]}
+        for name in ASKED["3_chaining"].points
+    ]
+    (tmp_path / "3_chaining.ipynb").write_text(json.dumps({"cells": done}))
+    (tmp_path / "4_inversion.ipynb").write_text(
+        json.dumps({"cells": [*done, {"cell_type": "raw"}, {"outputs": [{"text": ""}]}]})
+    )
+    (tmp_path / "5_pre_grasp.ipynb").write_text('{"cells": 1}')
+    text, html = summed_up(shell, "1_rotation", rotation_about_z=EXERCISES["rotation_about_z"].reference)
+    course = "1 rotation 1 of 4, 2 homogeneous transforms 0 of 5, 3 chaining ✓, 4 inversion 0 of 3, 5 pre grasp 0 of 2"
+    assert text.splitlines()[-1] == f"The course: {course}"
+    assert '<strong>1 rotation 1 of 4</strong> → <a href="2_homogeneous_transforms.ipynb">' in html
 
 
 def test_questions_for_a_person_are_listed(shell):

@@ -3,8 +3,6 @@
 The server runs under /user/x/, as behind a JupyterHub. Screenshots go to screenshots/, to be looked at.
 """
 
-import base64
-import gzip
 import io
 import re
 import shutil
@@ -19,6 +17,7 @@ from PIL import Image
 from support import ROOT, wait_for
 from transform_lab import tft
 from transform_lab.animations import between
+from transform_lab.viewing.page import packed
 
 NOTEBOOKS = [path.stem for path in sorted((ROOT / "notebooks/transforms").glob("*.ipynb"))]
 SCREENSHOTS = ROOT / "screenshots"
@@ -155,7 +154,7 @@ def test_scene_and_slider_agree(live):
         until(scene, "b", about_z(degrees))
     # the browser drops the scene, so that the picture is seen, and it comes back when it is wanted again
     scene.evaluate("() => { viewer.renderer.getContext().getExtension('WEBGL_lose_context').loseContext() }")
-    scene.wait_for_function("() => document.body.style.background === 'none'")
+    scene.wait_for_function("() => document.body.className === ''")
     assert not scene.locator("canvas").is_visible()
     scene.evaluate("() => { document.documentElement.dispatchEvent(new Event('mouseenter')) }")
     scene = live.scene(0)
@@ -376,7 +375,7 @@ def test_figures_without_what_draws_them_are_pictures_until_it_comes(page, serve
         notebook.activate(cell)
         notebook.command("notebook:run-cell")
     notebook.wait_until_idle()
-    frame.wait_for_function("() => document.body.style.background === 'white'")
+    frame.wait_for_function("() => document.body.className")
     assert shown_in(notebook) == [3, 4] and frame.get_by_text(TO_TURN).count() == 0
 
 
@@ -413,9 +412,7 @@ def test_nothing_is_run_that_others_have_left_in_the_browser(page, server):
     assert shown_in(notebook) == [3, 4]
     notebook.command("docmanager:save")
     page.goto(f"{server.url}/api")
-    evil = base64.b64encode(
-        gzip.compress(b"parent.evil = document.body.innerHTML = 'evil'; showScene = () => {}")
-    ).decode()
+    evil = packed(b"parent.evil = document.body.innerHTML = 'evil'; showScene = () => {}")
     page.evaluate("evil => Object.keys(localStorage).forEach(key => localStorage[key] = evil)", evil)
     notebook = Opened(page, server, "four", fresh=False)
     waiting(notebook, 1)
@@ -444,6 +441,16 @@ def test_an_untrusted_copy_shows_the_pictures(page, server):
         assert cell.locator("iframe").count() == 0
     SCREENSHOTS.mkdir(exist_ok=True)
     page.screenshot(path=SCREENSHOTS / "untrusted.png")
+
+
+@pytest.mark.parametrize("name", ["glossary", "card", "conventions"])
+def test_a_page_of_words_opens_as_it_is_read(page, server, name):
+    Opened(page, server, "1_rotation")
+    page.locator(f'.jp-Notebook a[href*="{name}.md"]').first.click()
+    shown = page.locator(".jp-MarkdownViewer")
+    shown.locator("table td").first.wait_for()
+    SCREENSHOTS.mkdir(exist_ok=True)
+    page.screenshot(path=SCREENSHOTS / f"{name}.png")
 
 
 def test_notebook_7(page, server):

@@ -9,6 +9,7 @@ from support import ROOT
 TEXTS = ROOT / "source/transforms"
 NOTEBOOKS = sorted(TEXTS.glob("*.ipynb"))
 NAMES = [path.stem for path in NOTEBOOKS]
+PAGES = sorted(TEXTS.glob("*.md"))
 TEACHES_NO_IDEA = ("Question:", "Three mistakes", "Where a robot uses this", "Summary")
 MOVES = re.compile(r"\.interact\(|\banimate")
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
@@ -59,6 +60,25 @@ def test_an_idea_is_seen_said_predicted_done_and_checked(path, title):
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=NAMES)
+def test_a_prediction_can_be_answered_before_it_is_unfolded(path):
+    """A question that ends its cell, a cell with a place to answer, and after that what unfolds or runs."""
+    every = cells(path)
+    for place, cell in enumerate(every):
+        assert cell.source.count("**Predict.**") <= 1, cell.id
+        if "**Predict.**" in cell.source:
+            assert "<details><summary>Answer" not in cell.source, (
+                f"{cell.id}: the place to answer comes before the answer"
+            )
+            following = every[place + 1 :]
+            answered = next(
+                i for i, after in enumerate(following) if re.search(r"^predict\(", after.source, re.MULTILINE)
+            )
+            assert following[answered].metadata.jupyter.source_hidden, f"{cell.id}: the answer stands in the open code"
+            assert "<details>" not in "".join(after.source for after in following[:answered]), cell.id
+            assert "**Predict.**" not in "".join(after.source for after in following[:answered]), cell.id
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=NAMES)
 def test_an_exercise_is_a_heading_a_cell_to_fill_in_and_its_check(path):
     every = cells(path)
     headings = {}
@@ -88,6 +108,11 @@ def test_a_notebook_opens_and_ends_as_the_others(path):
     assert "**Afterwards you can**" in every[0].source and "](conventions.md)" in every[0].source
     assert list(parts)[-3:] == ["Three mistakes people make here", "Where a robot uses this", "Summary"]
     assert every[-1].source == f'sum_up("{path.stem}")'
+    assert set(LINK.findall(every[0].source)) >= {
+        *(f"{name}.ipynb" for name in NAMES if name != path.stem),
+        "glossary.md",
+        "card.md",
+    }
 
     mistakes = parts["Three mistakes people make here"]
     words, pictures = mistakes[0::2], mistakes[1::2]
@@ -106,7 +131,7 @@ def text_of(path):
     return path.read_text(encoding="utf-8") if path.suffix == ".md" else "\n\n".join(c.source for c in prose(path))
 
 
-@pytest.mark.parametrize("path", [*NOTEBOOKS, TEXTS / "conventions.md"], ids=[*NAMES, "conventions"])
+@pytest.mark.parametrize("path", [*NOTEBOOKS, *PAGES], ids=[*NAMES, *(page.stem for page in PAGES)])
 def test_links_resolve_and_stay_in_the_folder(path):
     text = text_of(path)
     assert not re.search(r"https?://|\bwww\.", text)

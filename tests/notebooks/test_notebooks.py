@@ -115,3 +115,23 @@ def test_a_page_can_be_made_in_the_sandbox_when_a_cell_asks_for_it(sandboxed):
     with against.sandbox(Submission("", {})) as sandbox, sandbox.notebook() as process:
         run = process.run_cell("from transform_lab import Viewer\nlen(Viewer().html()) > 100_000")
         assert [output["data"]["text/plain"] for output in run.outputs] == ["True"]
+
+
+LEFT_OVER = """
+import matplotlib
+import matplotlib.pyplot as plt
+plt.switch_backend("template")  # draws nothing
+matplotlib.rcParams.update({"savefig.transparent": True, "figure.facecolor": "none", "interactive": True})
+plt.figure(figsize=(4, 4))  # an interrupted cell's, never shown and never closed
+"""
+
+
+def test_plots_are_drawn_whatever_is_left_over_in_pyplot(run_all):
+    def drawn(*before):
+        lines = ["from transform_lab import plot_columns, plot_quaternion\nimport numpy as np", *before]
+        cells = [nbformat.v4.new_code_cell(line) for line in (*lines, "plot_columns(np.eye(3));", "plot_quaternion();")]
+        notebook = run_all(nbformat.v4.new_notebook(cells=cells), ROOT / "source/transforms")
+        return [[output["data"]["text/html"] for output in cell.outputs] for cell in notebook.cells[-2:]]
+
+    plain = drawn()
+    assert [len(shown) for shown in plain] == [1, 1] and drawn(LEFT_OVER) == plain

@@ -3,6 +3,7 @@ r"""Every number and every formula in the words of the notebooks, and of convent
 - **Numbers** are compared with code by the claims in prose.txt. What no claim covers makes a test fail.
 - **Formulas** with an equality are computed as they are written, in frames at random (formulas.py).
 - **Points and minutes** in headings and openings are those of nbgrader's cells.
+- **Predictions**: the folded answer has the numbers that `predict` takes for right; its reasons are prose like any other.
 
 How to add a number: write a line into prose.txt, under the notebook and the cell's id, in the order of the text:
 
@@ -52,11 +53,12 @@ TEXTS = ROOT / "source/transforms"
 CLAIMS = ROOT / "tests/notebooks/prose.txt"
 NOTEBOOKS = sorted(path.stem for path in TEXTS.glob("*.ipynb"))
 CONVENTIONS = "conventions"
+PAGES = [CONVENTIONS, "glossary"]
 SAME_ORIGIN = "same origin"  # what may follow "where": the cell speaks of rotations only
 
 # Numerals that state nothing which code could compute.
 NO_CLAIMS = {
-    r"\[(notebook )?(\d)\]\(\2_\w+\.ipynb\)": "a link to another notebook",
+    r"\[(notebook )?(\d)( [\w -]+)?\]\(\2_\w+\.ipynb\)|\*\*\d [\w -]+\*\* [→·]": "a link to another notebook, or this one",
     r"\b[234]x[234]\b": "the shape of a matrix",
     r"\bnotebook \d\b": "another notebook",
     r"^# \d · ": "the title",
@@ -65,7 +67,7 @@ NO_CLAIMS = {
     r"`(Point|lookup_transform|rospy\.Publisher|node\.create_publisher)\([^`]*`|`ROS_PYTHON_CHECK_FIELDS=1`": "code to use",
     r"\bExamples? [12]\b": "a name",
     r"^\d\. ": "the number of an item",
-    r"`(v\[:3\]|M\[:2, :2\] =\s…|M\[:2, 3\] = …|np\.append\(v, 1\)|np\.eye\(4\))`": "code to use",
+    r"`(v\[:3\]|T\[:3, :3\] = R|T\[:3, 3\]|np\.append\(v, 1\)|(T = )?np\.eye\(4\))`": "code to use",
 }
 COUNTED = r"(?:centimetres|turns?|degrees|radians|points|minutes|digits)\b"  # words are numbers in front of these
 NUMERAL = re.compile(
@@ -133,11 +135,16 @@ NAMES = {
 
 @dataclass
 class Cell:
-    """A Markdown cell, or a section of conventions.md; `names` are the variables after the code cell that follows it."""
+    """A Markdown cell, what a prediction says, or a section of conventions.md.
+
+    `names` are the variables after the code cell that follows; `right` and `wrong` are what a prediction takes for so.
+    """
 
     id: str
     text: str
     names: dict = field(default_factory=dict)
+    right: object = None
+    wrong: tuple = ()
 
 
 @dataclass(frozen=True)
@@ -189,16 +196,24 @@ def read_claims(text):
 def notebook(name):
     """The notebook's Markdown cells, with the variables that its code cells make while they run in this process."""
     book = nbformat.read(TEXTS / f"{name}.ipynb", as_version=4)
-    names, after, printed, waiting, cells = {"__name__": "__main__"}, {}, {}, [], []
+    names, after, printed, predicted, waiting, cells = {"__name__": "__main__"}, {}, {}, {}, [], []
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("TRANSFORM_LAB_GRADING", "1")  # nothing is drawn
+        patch.setattr(transform_lab, "predict", lambda answer, wrong=(), **told: asked.append((answer, dict(wrong))))
         for cell in book.cells:
             if cell.cell_type == "markdown":
                 waiting.append(Cell(cell.id, cell.source))
                 cells.append(waiting[-1])
                 continue
+            asked = []
             with redirect_stdout(io.StringIO()) as output:
                 exec(compile(cell.source, f"{name}, cell {cell.id}", "exec"), names)
+            if asked:
+                ((predicted[cell.id], wrong),) = asked
+                text = "\n".join([*re.findall("^# (.*)", cell.source, re.MULTILINE), *wrong.values()])
+                cells.append(Cell(cell.id, text, right=predicted[cell.id], wrong=tuple(wrong)))
+                waiting.append(cells[-1])
+                continue  # it makes no names
             after[cell.id], printed[cell.id] = dict(names), [value for value, _ in numbers(output.getvalue())]
             for text in waiting:
                 text.names = after[cell.id]
@@ -207,20 +222,21 @@ def notebook(name):
         cell.names = {
             **cell.names, **NAMES, "points": points(name),
             "at": lambda cell_id: SimpleNamespace(**after[cell_id]), "printed": printed.__getitem__,
+            "predicted": predicted.__getitem__,
         }  # fmt: skip
     return cells
 
 
 @cache
-def conventions():
-    """The sections of conventions.md, each under the first words of its heading."""
-    parts = re.split(r"^(?=## )", (TEXTS / "conventions.md").read_text(encoding="utf-8"), flags=re.MULTILINE)
+def page(name):
+    """The sections of conventions.md or of another page, each under the first words of its heading."""
+    parts = re.split(r"^(?=## )", (TEXTS / f"{name}.md").read_text(encoding="utf-8"), flags=re.MULTILINE)
     titles = [re.match("#+ (.*?)[:,\n]", part)[1] for part in parts]
     return [Cell(re.sub(r"\W+", "-", title.lower()), part, NAMES) for title, part in zip(titles, parts)]
 
 
 def texts(name):
-    return conventions() if name == CONVENTIONS else notebook(name)
+    return page(name) if name in PAGES else notebook(name)
 
 
 @cache
@@ -247,7 +263,7 @@ def problems(name, cells, claims):
     found, given = [], {}
     for cell in cells:
         checked = _Checked(cell, *claims.get((name, cell.id), ((), ())), given)
-        if name != CONVENTIONS:
+        if name not in PAGES:
             checked.points(points(name))
         checked.claims()
         checked.formulas(shared_origin=name == NOTEBOOKS[0])
@@ -278,8 +294,10 @@ class _Checked:
             self.compare(match, [(int(match["points"]), 0)], [right], "nbgrader's cell")
         for match in TOTAL.finditer(self.cell.text):
             self.compare(match, [(int(match["points"]), 0)], [sum(of.values())], "the sum of nbgrader's cells")
-            if not 25 <= int(match["minutes"]) <= 40:
-                self.problems.append(f"{match['minutes']} minutes: a notebook is made for 25 to 40")
+            if not 25 <= int(match["minutes"]) <= 100:
+                self.problems.append(f"{match['minutes']} minutes: a notebook is made for 25 to 100")
+            if int(match["minutes"]) > 60 and not re.search(r"places? to\s+stop", match[0]):
+                self.problems.append(f"{match['minutes']} minutes: say where to stop")
 
     def claims(self):
         place = 0
@@ -376,14 +394,34 @@ def claims():
     return read_claims(CLAIMS.read_text(encoding="utf-8"))
 
 
-@pytest.mark.parametrize("name", [*NOTEBOOKS, CONVENTIONS])
+@pytest.mark.parametrize("name", [*NOTEBOOKS, *PAGES])
 def test_numbers_and_formulas_are_what_the_code_says(name):
     found = problems(name, texts(name), claims())
     assert not found, "\n".join(["", *found])
 
 
+@pytest.mark.parametrize("name", NOTEBOOKS)
+def test_a_folded_answer_says_what_its_prediction_takes_for_right(name):
+    cells = notebook(name)
+    predictions = [(cell, cells[place + 1]) for place, cell in enumerate(cells) if cell.right is not None]
+    assert predictions
+    spoken_of = {
+        spoken for at, (lines, _) in claims().items() if at[0] == name
+        for line in lines for spoken in re.findall(r'predicted\("([\w-]+)"\)', line.code)
+    }  # fmt: skip
+    for prediction, answer in predictions:
+        if isinstance(prediction.right, str):
+            assert prediction.id in spoken_of, f"write a line into prose.txt on what {prediction.id} takes for right"
+            continue
+        right, said = flat(prediction.right), numbers(answer.text)
+        runs = [said[start : start + len(right)] for start in range(len(said) - len(right) + 1)]
+        close = [all(abs(v - r) <= off + MEANT_EXACTLY for (v, off), r in zip(run, right)) for run in runs]
+        assert any(close), f"{answer.id} does not say {right}, which {prediction.id} takes for right"
+        assert not [wrong for wrong in prediction.wrong if np.allclose(flat(wrong), right, atol=0.02)], prediction.id
+
+
 def test_every_claim_speaks_of_a_text_that_there_is():
-    assert {name for name, _ in claims()} <= {*NOTEBOOKS, CONVENTIONS}
+    assert {name for name, _ in claims()} <= {*NOTEBOOKS, *PAGES}
 
 
 SUM = support.points("1_rotation")
@@ -392,7 +430,7 @@ SUM = support.points("1_rotation")
 @pytest.mark.parametrize(
     "name, cell_id, right, broken, says",
     [
-        ("1_rotation", "turns-predict", "(-1, 0, 0)", "(1, 0, 0)", "says [1.0, 0.0, 0.0]"),
+        ("1_rotation", "turns-predict-unfold", "(-1, 0, 0)", "(1, 0, 0)", "says [1.0, 0.0, 0.0]"),
         ("1_rotation", "columns-say", "0 & -1 & 0", "0 & 1 & 0", "gives [0.0, -1.0, 0.0, 1.0"),
         (
             "1_rotation",
@@ -402,13 +440,19 @@ SUM = support.points("1_rotation")
             f"the sum of nbgrader's cells gives [{SUM:g}]",
         ),
         ("1_rotation", "same-exercise", "(1 point)", "(2 points)", "nbgrader's cell gives [1]"),
-        ("1_rotation", "quaternions-formula", "= 0.3827$", "= 0.3826$", "is not true"),
-        ("2_homogeneous_transforms", "example-one", "raised by half a metre", "raised by a metre", "gives [45.0, 0.5]"),
+        ("1_rotation", "quaternions-formula-unfold", "= 0.3827$", "= 0.3826$", "is not true"),
+        (
+            "2_homogeneous_transforms",
+            "example-one-unfold",
+            "raised by half a metre",
+            "raised by a metre",
+            "gives [45.0, 0.5]",
+        ),
         ("2_homogeneous_transforms", "example-one", r"& -\sin 45", r"& \sin 45", "is not true"),
         ("3_chaining", "inner-names-say", "{}^A T_B \\; {}^B T_C", "{}^B T_C \\; {}^A T_B", "is not true"),
-        ("3_chaining", "order", "You face left", "You walk 3 m, and face left", "nothing computes the number 3"),
-        ("4_inversion", "undo", "(\\mathbf{p}_A - \\mathbf{t})", "(\\mathbf{p}_A + \\mathbf{t})", "is not true"),
-        ("5_pre_grasp", "waypoints-say", "-0.241", "-0.242", "-0.241421356"),
+        ("3_chaining", "order-unfold", "You face left", "You walk 3 m, and face left", "nothing computes the number 3"),
+        ("4_inversion", "undo-unfold", "(\\mathbf{p}_A - \\mathbf{t})", "(\\mathbf{p}_A + \\mathbf{t})", "is not true"),
+        ("5_pre_grasp", "waypoints-say-unfold", "-0.241", "-0.242", "-0.241421356"),
         ("conventions", "the-example", "(−2, 1, −3)", "(−2, −1, −3)", "gives [-2.0, 1.0, -3.0]"),
         ("conventions", "frames", "`a_T_c = a_T_b @ b_T_c`", "`a_T_c = b_T_c @ a_T_b`", "is not true"),
         ("4_inversion", "robot", "Hand-eye", "$$ {}^A T_B $$ Hand-eye", "nothing checks the formula"),

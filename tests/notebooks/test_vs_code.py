@@ -13,6 +13,7 @@ import nbformat
 import pytest
 from jupyter_lab import drawn
 from support import PATIENCE, ROOT
+from transform_lab.predictions import place
 
 POLICY = (
     "default-src 'none'; script-src 'self' https://*.vscode-cdn.net 'unsafe-inline' 'unsafe-eval'; "
@@ -26,10 +27,11 @@ FRAME = """<meta http-equiv="Content-Security-Policy" content="default-src 'none
     src="outputs.html" style="width: 950px; height: 750px"></iframe>"""
 OUTPUTS = f"""<meta http-equiv="Content-Security-Policy" content="{POLICY}"><body><div id="container"></div><script>
     window.parent = window; window.top = window; window.frameElement = null;
-    function show(html) {{
-      const element = document.createElement("div");
+    function show(html, shadow) {{
+      const element = document.createElement("div"), place = document.createElement("div");
+      document.getElementById("container").append(place);
+      (shadow ? place.attachShadow({{mode: "open"}}) : place).append(element);
       element.innerHTML = html;
-      document.getElementById("container").append(element);
       for (const node of Array.from(element.getElementsByTagName("script"))) {{
         const script = document.createElement("script");
         script.text = node.innerText;
@@ -86,3 +88,16 @@ def test_scenes_are_drawn(outputs, scenes):
 def test_a_folder_that_is_not_trusted_shows_their_texts(scenes):
     for scene in scenes:
         assert set(scene) == {"text/html", "text/plain"} and scene["text/plain"].startswith("Scene in the fixed frame")
+
+
+@pytest.mark.parametrize("shadow", [True, False])
+def test_predictions_are_answered_whichever_is_shown_first(outputs, shadow):
+    for answer, carries in (([1.0], False), ([2.0], True), ([3.0], False), ([4.0], True), ([5.0], False)):
+        outputs.evaluate("([html, shadow]) => show(html, shadow)", [place(answer, [], carries=carries), shadow])
+    fields = outputs.get_by_label("Your answer")
+    fields.nth(4).wait_for()
+    for number in range(5):
+        fields.nth(number).fill(str(number + 1))
+        fields.nth(number).press("Enter")
+    said = outputs.locator("output").all_inner_texts()
+    assert len(said) == 5 and all(words.startswith("✓ Yes") for words in said)

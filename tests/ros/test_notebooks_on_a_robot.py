@@ -42,7 +42,7 @@ def here(monkeypatch):
         return Viewer()
 
     for name in transform_lab.__all__:
-        if name.startswith(("animate", "plot")) or name in ("check", "show_mistake", "sum_up"):
+        if name.startswith(("animate", "plot")) or name in ("check", "predict", "show_mistake", "sum_up"):
             monkeypatch.setattr(transform_lab, name, nothing)
     monkeypatch.setattr(transform_lab, "once_done", program.nullcontext)
     monkeypatch.setattr(transform_lab, "Viewer", Viewer)

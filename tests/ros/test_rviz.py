@@ -173,7 +173,7 @@ def shown(browser, viewer):
     """The picture that a browser shows of a viewer's page, without the controls below."""
     window = browser.new_page(viewport={"width": WIDTH, "height": HEIGHT + page.ROW})
     window.set_content(page.render(markers_alone(viewer), "frame_a", "overview"))
-    window.wait_for_function("document.body.style.background === 'white'")
+    window.wait_for_function("document.body.className")
     png = window.screenshot(clip={"x": 0, "y": 0, "width": WIDTH, "height": HEIGHT})
     window.close()
     return np.array(Image.open(io.BytesIO(png)).convert("RGB"))

@@ -16,7 +16,11 @@ from transform_lab import (
     Viewer,
     animate_approach,
     animate_chain,
+    animate_determinant,
     animate_inverse,
+    animate_journey,
+    animate_mirrors,
+    animate_retelling,
     animate_rotation,
     plot_columns,
     plot_from_above,
@@ -24,6 +28,7 @@ from transform_lab import (
     tft,
 )
 from transform_lab.viewing.motion import MOST_STATES, STATES, control
+from transform_lab.viewing.page import SAFE
 
 pytestmark = pytest.mark.filterwarnings("ignore:zmq.eventloop.ioloop is deprecated")  # by meshcat
 
@@ -74,7 +79,7 @@ def test_a_chain_is_put_together_link_by_link():
     np.testing.assert_allclose(half.lookup("B", "C")[:3, 3], TILTED[:3, 3] / 2, atol=1e-9)
     end = at(viewer, 1)
     np.testing.assert_allclose(end.lookup("A", "D"), STEP @ TILTED @ STEP, atol=1e-9)
-    assert "A_T_D = A_T_B @ B_T_C @ C_T_D" in end.text
+    assert "a_T_d = a_T_b @ b_T_c @ c_T_d" in end.text
     assert f"{(STEP @ TILTED @ STEP)[0, 3]:7.3f}" in end.text
 
 
@@ -82,9 +87,9 @@ def test_an_inverse_is_the_same_frames_from_the_other_side():
     viewer = animate_inverse(TILTED)
     for moment in (0, 0.4, 0.6, 1):
         np.testing.assert_allclose(at(viewer, moment).lookup("A", "B"), TILTED, atol=1e-9)
-    np.testing.assert_allclose(at(viewer, 0).lookup("viewer", "A"), np.eye(4), atol=1e-9)
-    np.testing.assert_allclose(at(viewer, 1).lookup("viewer", "B"), np.eye(4), atol=1e-9)
-    assert "A_T_B" in at(viewer, 0).text and "B_T_A" in at(viewer, 1).text
+    np.testing.assert_allclose(at(viewer, 0).lookup("you", "A"), np.eye(4), atol=1e-9)
+    np.testing.assert_allclose(at(viewer, 1).lookup("you", "B"), np.eye(4), atol=1e-9)
+    assert "A. a_T_b" in at(viewer, 0).text and "B. b_T_a" in at(viewer, 1).text
     assert f"{np.linalg.inv(TILTED)[1, 3]:7.3f}" in at(viewer, 1).text
 
 
@@ -96,6 +101,61 @@ def test_an_approach_stops_at_the_pre_grasp_pose_and_a_wrong_one_misses():
     missed = np.linalg.norm(end.lookup("object", "wrong")[:3, 3])
     assert f"wrong ends {100 * missed:.1f} cm from the object; gripper_link ends 0.0 cm" in end.text
     assert missed > 0.05
+
+
+@pytest.mark.parametrize("degrees", [30, 90, 180, -120])
+@pytest.mark.parametrize("point", [(0.9, -0.3, 0.2), (0, 1, 0), (-0.2, 0.5, -1)])
+def test_two_mirrors_turn_by_twice_their_angle_and_are_the_quaternion(degrees, point):
+    viewer = animate_mirrors(degrees, point)
+    turn = tft.rotation_matrix(math.radians(degrees), [0, 0, 1])
+    scene = at(viewer, 1)
+    np.testing.assert_allclose(scene.points["twice mirrored"].position, turn[:3, :3] @ point, atol=1e-12)
+    _, _, z, w = tft.quaternion_about_axis(math.radians(degrees), [0, 0, 1])
+    assert scene.text.endswith(f"w = cos {degrees / 2:g}° = {w:.4f}   z = sin {degrees / 2:g}° = {z:.4f}")
+    middle = at(viewer, 0.25).points["once mirrored"].position
+    assert abs(middle[1]) < 1e-12  # half of the way it is in the first mirror, which stands along x
+
+
+@pytest.mark.parametrize("matrix", [np.diag([1, 1, -1]), np.diag([2, 0.5, 1]), [[1, 0.5, 0], [0, 1, 0], [0, 0, 1]]])
+def test_a_determinant_is_the_volume_of_the_box_that_the_columns_span(matrix):
+    viewer = animate_determinant(matrix)
+    scene = at(viewer, 1)
+    assert f"volume {np.linalg.det(matrix):.2f}" in scene.text
+    (published,) = scene.markers.values()
+    corners = {tuple(np.round([p.x, p.y, p.z], 9)) for p in published.marker.points}
+    wanted = {tuple(np.round(np.array(matrix) @ [i & 1, i >> 1 & 1, i >> 2 & 1], 9)) for i in range(8)}
+    assert corners == wanted and len(published.marker.points) == 24
+
+
+def test_a_mirrored_box_is_flat_on_its_way():
+    assert [line.split("   ")[1] for line in (at(animate_determinant(np.diag([1, 1, -1])), moment).text.splitlines()[-1]
+            for moment in (0, 0.5, 1))] == ["a right hand", "flat: no volume", "a left hand"]  # fmt: skip
+
+
+def test_a_point_stays_while_one_frame_after_the_other_tells_of_it():
+    p_in_c, c_in_a = [0.5, 0.3, 0.4], STEP @ TILTED
+    viewer = animate_retelling(STEP, TILTED, p_in_c)
+    p_in_a = (c_in_a @ [*p_in_c, 1])[:3]
+    for moment in (0, 0.2, 0.5, 0.8, 1):
+        arrows = list(at(viewer, moment).arrows.values())
+        np.testing.assert_allclose(arrows[-1].tip, p_in_a, atol=1e-12)
+        assert all(np.allclose(one.tip, other.tail) for one, other in zip(arrows, arrows[1:]))
+    told = [at(viewer, moment) for moment in (0, 0.5, 1)]
+    assert [scene.text.splitlines()[0] for scene in told] == ["p_c", "p_b = b_T_c p_c", "p_a = a_T_b b_T_c p_c"]
+    for scene, origin in zip(told, (c_in_a[:3, 3], STEP[:3, 3], [0, 0, 0])):
+        np.testing.assert_allclose(next(iter(scene.arrows.values())).tail, origin, atol=1e-12)
+
+
+def test_a_journey_leads_from_stop_to_stop_and_takes_the_object_along():
+    stops = {"pre-grasp": STOP, "grasp": OBJECT, "lift": Pose(Point(0.6, -0.1, 0.85), OBJECT.orientation)}
+    viewer = animate_journey(OBJECT, stops, {**stops, "lift": STOP})
+    for moment, pose in zip((0, 0.5, 1), stops.values()):
+        place = at(viewer, moment).lookup("base_link", "gripper_link")[:3, 3]
+        np.testing.assert_allclose(place, [pose.position.x, pose.position.y, pose.position.z], atol=1e-9)
+    frames = [at(viewer, moment).boxes["block"].frame for moment in (0.25, 0.5, 0.75)]
+    assert frames == ["base_link", "base_link", "gripper_link"]
+    wrong = at(viewer, 1).lookup("base_link", "mistake")[:3, 3]
+    np.testing.assert_allclose(wrong, [STOP.position.x, STOP.position.y, STOP.position.z], atol=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -252,7 +312,7 @@ def told(viewer):
     """What the page of a viewer is told, in words and numbers."""
     source = re.search(r'srcdoc="([^"]*)"', viewer.figure())[1]
     packed = re.search(r"showScene\(await unpacked\(`([^`]*)`", html.unescape(source))[1]
-    data = gzip.decompress(base64.b64decode(packed))
+    data = gzip.decompress(base64.b85decode(packed.translate({new: old for old, new in SAFE.items()})))
     return json.loads(data[8 : 8 + int.from_bytes(data[4:8], "big")])
 
 

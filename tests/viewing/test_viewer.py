@@ -68,6 +68,27 @@ def test_lookup_chains_and_inverts(viewer):
     np.testing.assert_array_equal(viewer.lookup("a", "a"), np.eye(4))
 
 
+@pytest.mark.parametrize("seed", range(5))
+def test_a_path_leads_over_the_common_ancestor_and_its_product_is_the_lookup(seed):
+    random = np.random.default_rng(seed)
+    tree, names = Viewer("0"), ["0"]
+    for number in range(1, 12):
+        link = tft.random_rotation_matrix(random.random(3))
+        link[:3, 3] = random.uniform(-1, 1, 3)
+        tree.add_frame(str(number), link, random.choice(names))
+        names.append(str(number))
+    for target in names:
+        for source in names:
+            path, product = tree.path(target, source), np.eye(4)
+            assert (path[0], path[-1]) == (target, source) and len(set(path)) == len(path)
+            for here, there in zip(path, path[1:]):
+                assert here in (tree.frames[there].parent,) or tree.frames[here].parent == there
+                product = product @ tree.lookup(here, there)
+            np.testing.assert_allclose(product, tree.lookup(target, source), atol=1e-9)
+    with pytest.raises(ValueError, match="'12' is not known"):
+        tree.path("12", "0")
+
+
 def test_a_frame_that_is_replaced_takes_its_children_along(viewer):
     viewer.add_frame("b", np.eye(4))
     np.testing.assert_allclose(viewer.lookup("a", "c"), B_T_C, atol=1e-12)
@@ -661,6 +682,8 @@ import transform_lab as lab
 T = np.eye(4)
 v = lab.Viewer(); v.add_point('p', (1, 2, 3))
 shown = [v, lab.animate_rotation(T), lab.animate_chain(T, T), lab.animate_inverse(T), lab.animate_approach(T, T, T)]
+shown += [lab.animate_mirrors(), lab.animate_determinant(T[:3, :3]), lab.animate_retelling(T, T, [1, 2, 3])]
+shown += [lab.animate_journey(T, {'pre-grasp': T, 'grasp': T})]
 shown.append(lab.Viewer().interact(lambda scene, x: None, x=(0, 1)))
 assert all(list(viewer._repr_mimebundle_()) == ['text/plain'] for viewer in shown)
 assert lab.plot_columns(T) is lab.plot_quaternion() is lab.plot_from_above(v) is None
@@ -809,8 +832,9 @@ def test_the_page_draws_the_scene_as_seen_by_the_camera(viewer, dom):
     place = [float(v) for v in re.search(r'"place":\[([^,]*),([^\]]*)\]', found).groups()]
     expected = [(x - ASPECT / 2) * 2 * height / width, 2 * y - 1]  # from -1 to 1 across the window
     np.testing.assert_allclose(place, expected, atol=1e-3)
-    labels = re.findall(r'<div class="label"[^>]*>([^<]*)</div>', elements)
-    assert sorted(map(html.unescape, labels)) == sorted(["X", "Y", "Z"] * 3 + ["a", "b", "c", "</script><b>1"])
+    labels = re.findall(r'<div class="label"[^>]*>(.*?)</div>', elements)
+    axes = [f"{letter}<sub>{name}</sub>" for letter in "xyz" for name in "ABC"]
+    assert sorted(labels) == sorted([*axes, "a", "b", "c", html.escape("</script><b>1")])
 
 
 def test_without_webgl_the_picture_remains(viewer, dom):
@@ -819,3 +843,22 @@ def test_without_webgl_the_picture_remains(viewer, dom):
     with_webgl = dom(viewer.html(), *SOFTWARE_WEBGL)
     assert "<iframe" in with_webgl
     assert Image.open(io.BytesIO(base64.b64decode(re.search(PICTURE, elements)[1]))).width > 700
+
+
+def test_a_hand_is_a_right_hand_along_the_axes_of_its_frame():
+    viewer = Viewer("a")
+    viewer.add_frame("b", tft.rotation_matrix(0.7, [1, 2, 3]), length=0.1)
+    viewer.add_hand("b", length=0.1)
+    node = next(node for node in drawn(viewer).nodes if node.path == "hands/b")
+    np.testing.assert_allclose(node.transform, viewer.lookup("a", "b"))
+    tips = np.array([solid.matrix[:3, 3] for solid in node.solids if solid.kind == "sphere"])
+    index, middle, thumb = tips[np.argmax(tips, axis=0)]
+    for tip, axis in zip(
+        (index, middle, thumb), np.eye(3)
+    ):  # each straight along its axis, and no longer than the axis
+        assert tip @ axis > 0.08 and tip @ axis < 0.1
+        np.testing.assert_allclose(tip * (1 - axis), 0, atol=1e-12)
+    wrist = min((solid.matrix[:3, 3] for solid in node.solids), key=lambda place: place[0])
+    assert wrist[0] < -0.1  # behind the fingers
+    with pytest.raises(ValueError, match="c"):
+        viewer.add_hand("c")

@@ -37,7 +37,6 @@ def _picture(plot):
 
 
 def _show(axes):
-    import matplotlib.pyplot as plt
     from IPython.display import display
     from PIL import Image
 
@@ -47,8 +46,7 @@ def _show(axes):
     words = f"{axes.get_title()}. Across: {axes.get_xlabel()}. Up: {axes.get_ylabel() or 'from -1 to 1'}."
     words += f" Shown: {', '.join(name for name in names if name and not name.startswith('_'))}."
     file = io.BytesIO()
-    axes.figure.savefig(file, dpi=100)
-    plt.close(axes.figure)  # or Jupyter would show it once more
+    axes.figure.savefig(file, dpi=90, facecolor="white")
     display({"text/plain": words, "text/html": still(Image.open(file).convert("RGB"), words, "")}, raw=True)
 
 
@@ -134,9 +132,15 @@ def plot_from_above(viewer, ax=None):
 
 
 def _new_axes(width, height):
-    import matplotlib.pyplot as plt
+    """Return axes of a new figure. In a notebook pyplot does not know it: nothing that is left over there counts."""
+    if shell():
+        from matplotlib.figure import Figure
 
-    figure, ax = plt.subplots(figsize=(width, height), layout="constrained")
+        ax = Figure(figsize=(width, height), layout="constrained").subplots()
+    else:
+        import matplotlib.pyplot as plt
+
+        ax = plt.subplots(figsize=(width, height), layout="constrained")[1]
     ax.grid(color="#e4e7eb")
     ax.set_axisbelow(True)
     return ax

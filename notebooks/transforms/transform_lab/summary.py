@@ -1,8 +1,10 @@
-"""The last cell of a notebook: what is done, the points so far, and what to hand in."""
+"""The last cell of a notebook: what is done, the points so far, what to hand in, and where in the course this is."""
 
+import json
 from html import escape
+from pathlib import Path
 
-from .check import exercises, notebook_data, verdict_on
+from .check import exercises, notebook_data, notebooks, verdict_on
 from .judging import panel
 from .jupyter import being_graded, names, shell
 from .outdated import OUT_OF_DATE, missing, outdated
@@ -13,7 +15,8 @@ __all__ = ["sum_up"]
 def sum_up(notebook):
     """Check all exercises of `notebook`, such as "1_rotation", and show them as a table, with what to hand in.
 
-    The points are those that the cases of `check` give; the grader uses other cases of the same kinds.
+    The points are those that the cases of `check` give; the grader uses other cases of the same kinds. Below stands a map of the
+    course: of the other notebooks, what their checks said when they were saved in this folder.
     """
     if being_graded():
         print("The grader sums up by itself.")
@@ -30,13 +33,14 @@ def sum_up(notebook):
         f"To hand in: save this notebook, and hand in the file {notebook}.ipynb under this name.",
     ]
     lines = [f"{row['exercise']}  {row['earned']:g} of {row['points']:g}  {row['says']}" for row in rows]
-    text = "\n".join([*lines, *sentences])
+    course = [(name, right if name == notebook else _saved(name), len(notebook_data(name)[0])) for name in notebooks()]
+    text = "\n".join([*lines, *sentences, "The course: " + ", ".join(_place(*part) for part in course)])
     if shell() is None:
         print(text)
         return
     from IPython.display import display
 
-    display({"text/plain": text, "text/html": _table(rows, sentences)}, raw=True)
+    display({"text/plain": text, "text/html": _table(rows, sentences) + _map(course, notebook)}, raw=True)
 
 
 def _row(name, exercise, function):
@@ -61,6 +65,35 @@ def _row(name, exercise, function):
     return row
 
 
+def _saved(notebook):
+    """How many exercises of a notebook in this folder were right when it was saved; 0 where nothing tells."""
+    try:
+        cells = json.loads(Path(f"{notebook}.ipynb").read_text(encoding="utf-8"))["cells"]
+        said = [
+            str(output["data"].get("text/plain"))
+            for cell in cells
+            for output in cell.get("outputs", ())
+            if "data" in output
+        ]
+    except (OSError, ValueError, LookupError, TypeError, AttributeError):  # it is not there, or no notebook
+        return 0
+    return sum(any(f"{name}: all right." in text for text in said) for name in notebook_data(notebook)[0])
+
+
+def _place(notebook, right, number):
+    """A notebook on the map, in words: "1 rotation ✓", "2 homogeneous transforms 3 of 5"."""
+    return f"{notebook.replace('_', ' ')} {'✓' if right == number else f'{right} of {number}'}"
+
+
+def _map(course, here):
+    """The notebooks in a row of links, and where we are."""
+    places = []
+    for notebook, right, number in course:
+        words = escape(_place(notebook, right, number))
+        places.append(f"<strong>{words}</strong>" if notebook == here else f'<a href="{notebook}.ipynb">{words}</a>')
+    return f"<p>{' → '.join(places)}</p>"
+
+
 def _table(rows, sentences):
     left = ' style="text-align:left"'
     cells = "".join(
@@ -69,4 +102,6 @@ def _table(rows, sentences):
         for row in rows
     )
     head = f"<tr><th></th><th{left}>exercise</th><th>points</th><th{left}>what the check says</th></tr>"
-    return f"<table>{head}{cells}</table>" + "".join(f"<p>{escape(sentence)}</p>" for sentence in sentences)
+    return f'<div style="overflow-x:auto"><table>{head}{cells}</table></div>' + "".join(
+        f"<p>{escape(sentence)}</p>" for sentence in sentences
+    )

@@ -159,6 +159,11 @@ def _exercise(name):
     return exercises()[name]
 
 
+def notebooks():
+    """The names of all notebooks, in the order in which they are worked through."""
+    return list(_key()["notebooks"])
+
+
 def notebook_data(name):
     """The exercises of the notebook `name`, as {name: plain data}, and its questions for a person, as [[title, points], …]."""
     notebooks = _key()["notebooks"]

@@ -4,12 +4,14 @@ What only draws or judges does nothing here; what it is given has been computed 
 """
 
 import io
+from types import SimpleNamespace
 
 import rospy
 import tf.transformations as tft
 import tf2_ros
+import yaml
 from cells import Watched, nullcontext
-from geometry_msgs.msg import TransformStamped
+from geometry_msgs.msg import Point, Pose, Quaternion, TransformStamped
 
 
 class TfAndRviz:
@@ -36,6 +38,24 @@ class TfAndRviz:
         to, q = found.translation, found.rotation
         return tft.translation_matrix([to.x, to.y, to.z]) @ tft.quaternion_matrix([q.x, q.y, q.z, q.w])
 
+    @property
+    def frames(self):
+        told = yaml.safe_load(self.buffer.all_frames_as_yaml())
+        parents = {self.root: None} | {name: frame["parent"] for name, frame in told.items()}
+        return {name: SimpleNamespace(parent=parent) for name, parent in parents.items()}
+
+    def path(self, target, source):
+        ways = []
+        for name in (target, source):
+            way = [name]
+            while way[-1] != self.root:
+                way.append(self.frames[way[-1]].parent)
+            ways.append(way)
+        up = [name for name in ways[0] if name not in ways[1]]
+        down = [name for name in ways[1] if name not in ways[0]]
+        meeting = next(name for name in ways[0] if name in ways[1])
+        return [*up, meeting, *reversed(down)]
+
     def publish(self, marker):
         marker._check_types()
         marker.serialize(io.BytesIO())
@@ -43,7 +63,7 @@ class TfAndRviz:
     def _draw(self, *arguments, **options):
         return self
 
-    add_point = add_arrow = add_box = add_gripper = look = _draw
+    add_point = add_arrow = add_box = add_gripper = add_hand = look = _draw
 
 
 class Viewer(Watched, TfAndRviz):
@@ -58,6 +78,18 @@ def draw(*arguments, **options):
     return Viewer()
 
 
+def numpify(pose):
+    """As ros_numpy has it, which Debian has not."""
+    p, q = pose.position, pose.orientation
+    return tft.translation_matrix([p.x, p.y, p.z]) @ tft.quaternion_matrix([q.x, q.y, q.z, q.w])
+
+
+def msgify(kind, matrix):
+    assert kind is Pose
+    return Pose(Point(*tft.translation_from_matrix(matrix)), Quaternion(*tft.quaternion_from_matrix(matrix)))
+
+
 once_done = nullcontext
-animate_approach = animate_chain = animate_inverse = animate_rotation = draw
-plot_columns = plot_from_above = plot_quaternion = show_mistake = sum_up = draw
+animate_approach = animate_chain = animate_determinant = animate_inverse = animate_journey = draw
+animate_mirrors = animate_retelling = animate_rotation = draw
+plot_columns = plot_from_above = plot_quaternion = predict = show_mistake = sum_up = draw

@@ -17,7 +17,7 @@ from .meshcat_commands import block, changes, delete, properties
 from .page import labels
 
 PERIOD = 1 / 40  # seconds; more often than a screen shows it, nothing needs to be sent
-EVERYTHING = ("frames", "links", "points", "arrows", "boxes", "grippers", "markers")
+EVERYTHING = ("frames", "links", "points", "arrows", "boxes", "grippers", "hands", "markers")
 _links: dict = {}  # by their names
 
 

@@ -8,16 +8,21 @@ from pathlib import Path
 
 import numpy as np
 
-from .shapes import BESIDE, moved
+from .shapes import AROUND, NEAR, moved
 
-HEIGHT = 495  # pixels
+HEIGHT = 475  # pixels: as large as it is shown at most
 FINE = 2  # times as many pixels in each direction are painted first, so that edges are smooth
-NAME, WORDS = 15, 14  # height of letters: of names, and of the text in the corner
+NAME, SUBSCRIPT, WORDS = 15, 11, 14  # height of letters: of names, and of the text in the corner
 CAPITAL = 0.72  # of its font's size: the height of a capital letter
 MIDDLE = 0.26  # of its font's size: how far the middle of a line is above the line that letters stand on
 LOWER = 0.23  # of a capital letter's height
+LOWERED = 4  # pixels, a subscript
+COVERED = 20  # how bad it is to cover another label, or to stand on the edge of the picture
+LINE = 0.038  # height of a line, of the picture's height
+BOLD = "DejaVuSans-Bold.ttf"
 LARGEST = 600  # of a font; above it the picture would be all letter
 COLORS = [max(255 - (255 - value + 12) // 24 * 24, 0) for value in range(256)] * 3  # from white down
+GRID = "#d3d3d3"  # of lines as wide as a fine pixel: the pixels in which they are have the same shade of COLORS
 LIGHT = np.array([0.3, 0.2, 0.95])  # in the camera's right, up and backward directions
 
 
@@ -32,7 +37,7 @@ def render(nodes, grid, camera, text=""):
     pen = ImageDraw.Draw(image, "RGBA")
     lines = camera.project(grid)[0]
     for line in _pixels(lines[np.isfinite(lines).all(axis=(1, 2))]):
-        pen.line(line, fill="#d8dce2", width=FINE)
+        pen.line(line, fill=GRID)
     sheets = []  # of faces, with the distance at which they are painted
     for node in nodes:
         for solid in node.solids:
@@ -109,19 +114,42 @@ def webp(image):
 
 
 def _write(pen, nodes, camera):
-    """Write the labels: those that have a fixed place, then the others where they cover least."""
-    line = 0.038  # height of a line, of the picture's height
-    labels = [(label, node.transform) for node in nodes for label in node.labels if _in_view(label, node, camera)]
-    taken = []  # centre, half width and half height of what is drawn, and how bad it is to cover that
-    for label, transform in labels:
-        marks = [1] if label.beside else [0.3, 0.6, 0.9]  # the thing named, or along the axis to its letter
-        places = camera.project(moved(transform, np.outer(marks, label.position)))[0]
-        taken += [(x, y, line / 4, line / 4, 1) for x, y in places]
-    for label, transform in sorted(labels, key=lambda pair: pair[0].beside):
-        place = camera.project(moved(transform, label.position))[0]
-        half_width, half_height = 0.011 * len(label.text), line / 2
-        candidates = [place + [right * half_width, up * line] for right, up in BESIDE] if label.beside else [place]
+    """Write the labels where `places` has them."""
+    for label, size, font, (x, y) in places(nodes, camera):
+        color = tuple(round(255 * value) for value in label.color)
+        lines, small = label.text.split("\n"), _font(BOLD, SUBSCRIPT)
+        width = max(map(font.getlength, lines)) + small.getlength(label.subscript)
+        style = {"anchor": "ls", "stroke_width": 2, "stroke_fill": "white"}
+        for i, words in enumerate(lines):
+            below = (i - (len(lines) - 1) / 2) * 1.15 + MIDDLE
+            left, base = x * HEIGHT - width / 2, (1 - y) * HEIGHT + below * size
+            pen.text((left, base), words, color, font, **style)
+            if label.subscript:
+                pen.text((left + font.getlength(words), base + LOWERED), label.subscript, color, small, **style)
 
+
+def places(nodes, camera):
+    """Return [(label, size of its letters in pixels, font, the place of its middle)] in the order in which they are placed.
+
+    A place is as `camera.project` has it.
+    """
+    shown = [(label, node.transform) for node in nodes for label in node.labels if _in_view(label, node, camera)]
+    taken = []  # centre, half width and half height of what is drawn, and how bad it is to cover that
+    for label, transform in shown:
+        marks = [1] if label.near == "thing" else [0.3, 0.6, 0.8]  # the thing named, or along the axis to its letter
+        found = camera.project(moved(transform, np.outer(marks, label.position)))[0]
+        taken += [(x, y, LINE / 4, LINE / 4, 1) for x, y in found]
+    placed = []
+    for label, transform in sorted(shown, key=lambda pair: [None, *NEAR].index(pair[0].near)):
+        place, before = camera.project(moved(transform, np.outer([1, 0.9], label.position)))[0]
+        size = _font_size(label, transform, camera)
+        font = _font(BOLD if label.height is None else "DejaVuSans.ttf", size)
+        half_width, half_height = half_size(label, font)
+        along, across = np.array([half_width, 0]), np.array([0, LINE])
+        if label.near == "tip":
+            along = LINE * (place - before) / (np.linalg.norm(place - before) or 1)
+            across = np.array([-along[1], along[0]])
+        candidates = [place + one * along + other * across for one, other in NEAR.get(label.near, [(0, 0)])]
         marks = np.array(taken)
         w, h, badness = marks[:, 2:].T
 
@@ -129,21 +157,23 @@ def _write(pen, nodes, camera):
             x, y = np.abs(marks[:, :2] - candidate).T
             edge = np.minimum(candidate, [camera.aspect, 1] - candidate)
             cut_off = np.any(edge < [half_width, half_height])
-            return badness[(x < half_width + w) & (y < half_height + h)].sum() + 20 * cut_off
+            return badness[(x < half_width + w) & (y < half_height + h)].sum() + COVERED * cut_off
 
-        x, y = min(candidates, key=badness_at)
-        taken.append((x, y, half_width, half_height, 20 if label.beside else 5))
-        size = _font_size(label, transform, camera)
+        best = min(candidates, key=badness_at)
+        if label.near and badness_at(best) >= COVERED:
+            best = min([best, *(place + LINE * np.array(offset) for offset in AROUND)], key=badness_at)
+        x, y = best
+        taken.append((x, y, half_width, half_height, COVERED))
         if label.height is not None:  # RViz has a text lower than its position
             y -= LOWER * CAPITAL * size / HEIGHT
-        font = _font("DejaVuSans-Bold.ttf" if label.height is None else "DejaVuSans.ttf", size)
-        color = tuple(round(255 * value) for value in label.color)
-        lines = label.text.split("\n")
-        left = x * HEIGHT - max(map(font.getlength, lines)) / 2
-        for i, words in enumerate(lines):
-            below = (i - (len(lines) - 1) / 2) * 1.15 + MIDDLE
-            place = left, (1 - y) * HEIGHT + below * size
-            pen.text(place, words, color, font, anchor="ls", stroke_width=2, stroke_fill="white")
+        placed.append((label, size, font, (x, y)))
+    return placed
+
+
+def half_size(label, font):
+    """Return half the width and half the height of a label that is no marker's, in heights of the picture."""
+    width = max(map(font.getlength, label.text.split("\n"))) + _font(BOLD, SUBSCRIPT).getlength(label.subscript)
+    return width / 2 / HEIGHT, LINE / 2
 
 
 def _in_view(label, node, camera):

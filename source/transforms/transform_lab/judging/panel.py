@@ -73,7 +73,11 @@ def beside_a_bar(pieces, state="wrong"):
 def example(verdict, numbers=True):
     """The first case that is not right in HTML: what the function was given, what was expected, what came."""
     lines = escape("\n".join(_example(verdict, numbers)))
-    return f'<pre style="margin:6px 0;white-space:pre-wrap;font-family:monospace">{lines}</pre>' if lines else ""
+    return (
+        f'<pre style="margin:6px 0;overflow-x:auto;white-space:pre;font-family:monospace">{lines}</pre>'
+        if lines
+        else ""
+    )
 
 
 def with_code(sentence):

@@ -16,6 +16,7 @@ from .shapes import (
     arrow,
     frame_node,
     gripper_node,
+    hand_node,
     moved,
     path,
     placed,
@@ -88,12 +89,15 @@ def _draw(scene, at):
         color = translucent(box.color) if box.ghost else box.color
         node = Node(path("boxes", name), where[box.frame] @ box.transform, [placed("box", (0, 0, 0), box.size, color)])
         if name not in scene.frames:
-            node.labels.append(Label(name, np.zeros(3), _readable(color), beside=True))
+            node.labels.append(Label(name, np.zeros(3), _readable(color), near="thing"))
         nodes.append(node)
         ends += _corners([node]) if at is None or name in at else []
     for gripper in scene.grippers.values():
         nodes.append(gripper_node(gripper, where[gripper.frame]))
         ends += _corners(nodes[-1:]) if at is None or gripper.frame in at else []
+    for hand in scene.hands.values():
+        nodes.append(hand_node(hand, where[hand.frame]))
+        ends += _corners(nodes[-1:]) if at is None or hand.frame in at else []
     for name, thing in (*scene.points.items(), *scene.arrows.items()):
         if at is None or name in at:
             ends += [moved(where[thing.frame], p)[None] for p in vars(thing).values() if isinstance(p, np.ndarray)]
@@ -112,7 +116,8 @@ def _add_sized(scene, drawing, length, at):
     """Add to `drawing` all that is drawn the larger the longer the axes are."""
     where, thickness = drawing.frames, 0.05 * length
     for name, frame in scene.frames.items():
-        drawing.nodes.append(frame_node(name, where[name], frame.length or length, frame.ghost))
+        alone = len(scene.frames) == 1
+        drawing.nodes.append(frame_node(name, where[name], frame.length or length, frame.ghost, alone))
         if at is None or name in at:
             tips = [label.position for label in drawing.nodes[-1].labels]
             drawing.seen = np.concatenate([drawing.seen, moved(where[name], np.array(tips))])
@@ -123,12 +128,12 @@ def _add_sized(scene, drawing, length, at):
     for name, p in scene.points.items():
         size, color = (5 * thickness, translucent(p.color)) if p.ghost else (3 * thickness, p.color)
         ball = placed("sphere", p.position, size, color)
-        label = Label(name, p.position, _readable(p.color), beside=True)
+        label = Label(name, p.position, _readable(p.color), near="thing")
         drawing.nodes.append(Node(path("points", name), where[p.frame], [ball], labels=[label]))
     for name, a in scene.arrows.items():
         color = translucent(a.color) if a.ghost else a.color
         solids = arrow(a.tail, a.tip, color, thickness, 2.6 * thickness, 4.8 * thickness)
-        label = Label(name, (a.tail + a.tip) / 2, _readable(a.color), beside=True)
+        label = Label(name, (a.tail + a.tip) / 2, _readable(a.color), near="thing")
         drawing.nodes.append(Node(path("arrows", name), where[a.frame], solids, labels=[label]))
 
 

@@ -8,9 +8,9 @@ function showScene(buffer) {
   window.onmessage = null;  // meshcat's script leaves one that sends every message again, for making films
   const pane = document.getElementById("pane"), bar = document.getElementById("bar");
   const viewer = window.viewer = new MeshCat.Viewer(pane);
-  viewer.gui.domElement.style.display = "none";
   const resize = viewer.set_3d_pane_size.bind(viewer);
   viewer.set_3d_pane_size = () => resize(pane.clientWidth, pane.clientHeight);  // and not as high as the window
+  pane.querySelector("canvas").addEventListener("webglcontextlost", beginAnewWhenSeenAgain);
   const run = packets => packets.forEach(packet => viewer.handle_command_bytearray(packet));
   const object = path => viewer.scene_tree.find(path.split("/")).object;
   run(base);
@@ -55,6 +55,7 @@ function showScene(buffer) {
       const element = document.createElement("div");
       element.className = "label";
       element.textContent = label.text;
+      if (label.subscript) element.appendChild(document.createElement("sub")).textContent = label.subscript;
       element.style.color = label.color;
       pane.append(element);
       return {...label, element};
@@ -100,8 +101,11 @@ function showScene(buffer) {
   };
   const first = row();
   const views = Object.keys(fixed.cameras);
+  const caption = window.frameElement?.closest("figure")?.querySelector("figcaption");
   let seenFrom = view.seenFrom;
   choice(first, "Fixed frame", view.frames.map(frame => frame.name), view.fixed, i => {
+    const named = text => text.replace(`Fixed frame ${fixed.name}. `, () => `Fixed frame ${view.frames[i].name}. `);
+    if (caption) caption.textContent = named(caption.textContent);
     fixed = view.frames[i];
     settle();
     look(seenFrom);
@@ -121,11 +125,14 @@ function showScene(buffer) {
   settle();
   look(seenFrom);
   viewer.render();
-  document.body.style.background = "white";
+  followTheme(dark => view.frames.forEach((_, i) => {
+    object(`grid${i}/<object>`).material.color.set(dark ? "#3f444d" : "#d8dce2");
+    viewer.set_dirty();
+  }));
   // A browser keeps some 16 scenes and drops the oldest; that one comes back when it is wanted.
   viewer.renderer.domElement.addEventListener("webglcontextlost", () => {
     pane.style.visibility = "hidden";
-    document.body.style.background = "none";
+    document.body.className = "";
     document.documentElement.addEventListener("mouseenter", () => location.reload(), {once: true});
   });
 }
@@ -144,13 +151,26 @@ function blocks(buffer) {
   return found;
 }
 
+// Light or dark, as the notebook around is; a page by itself, or one that may not look around, is light.
+function followTheme(change) {
+  let around;
+  try { if (window.parent !== window) around = window.parent.document.body; } catch {}
+  const dark = () => around?.dataset.jpThemeLight === "false" || around?.classList.contains("vscode-dark");
+  const show = () => {
+    document.body.className = dark() ? "dark" : "light";
+    change(dark());
+  };
+  if (around) new MutationObserver(show).observe(around, {attributeFilter: ["data-jp-theme-light", "class"]});
+  show();
+}
+
 function labelled(into, title, ...elements) {
   const label = into.appendChild(document.createElement("label"));
   label.append(title, ...elements);
   return label;
 }
 
-// First the labels that have a fixed place, then the others where they cover least.
+// Labels that have no fixed place stand where they cover least.
 function placeLabels(labels, viewer, pane, view, object) {
   const width = pane.clientWidth, height = pane.clientHeight, project = (label, along) => {
     const p = viewer.camera.position.clone().set(...label.position).multiplyScalar(along);
@@ -161,7 +181,7 @@ function placeLabels(labels, viewer, pane, view, object) {
   };
   const taken = [];  // centre, half width and half height of what is drawn, and how bad it is to cover that
   for (const label of labels) {
-    const marks = label.beside ? [1] : [0.3, 0.6, 0.9];  // the thing named, or along the axis to its letter
+    const marks = label.near === "thing" ? [1] : [0.3, 0.6, 0.8];  // the thing named, or along the axis to its letter
     for (const along of marks) taken.push({...project(label, along), w: 4, h: 4, bad: 1});
   }
   for (const label of labels) {
@@ -171,9 +191,19 @@ function placeLabels(labels, viewer, pane, view, object) {
       style.fontSize = `${label.height / 0.72 * height / (2 * depth * Math.tan(view.fov / 360 * Math.PI))}px`;
     }
     const w = label.element.offsetWidth / 2, h = label.element.offsetHeight / 2;
-    let best = {bad: Infinity};
-    for (const [right, up] of label.beside ? view.beside : [[0, 0]]) {
-      const place = {x: x + right * w, y: y - up * 2 * h, w, h, bad: 0};
+    let best = {bad: Infinity}, along = {x: w, y: 0}, across = {x: 0, y: -2 * h};
+    if (label.near === "tip") {
+      const before = project(label, 0.9), length = Math.hypot(x - before.x, y - before.y) || 1;
+      along = {x: (x - before.x) / length * 2 * h, y: (y - before.y) / length * 2 * h};
+      across = {x: along.y, y: -along.x};
+    }
+    const candidates = (PLACES.near[label.near] ?? [[0, 0]]).map(
+      ([one, other]) => [x + one * along.x + other * across.x, y + one * along.y + other * across.y]);
+    const preferred = candidates.length;
+    if (label.near) candidates.push(...PLACES.around.map(([right, up]) => [x + right * 2 * h, y - up * 2 * h]));
+    for (const [number, [placeX, placeY]] of candidates.entries()) {
+      if (best.bad === 0 || number >= preferred && best.bad < 20) break;
+      const place = {x: placeX, y: placeY, w, h, bad: 0};
       if (Math.min(place.x, width - place.x) < w || Math.min(place.y, height - place.y) < h) place.bad += 20;
       for (const t of taken) {
         if (Math.abs(place.x - t.x) < w + t.w && Math.abs(place.y - t.y) < h + t.h) place.bad += t.bad;
@@ -183,8 +213,23 @@ function placeLabels(labels, viewer, pane, view, object) {
     const outside = depth < viewer.camera.near || x < 0 || y < 0 || x > width || y > height;
     style.visibility = outside ? "hidden" : "visible";
     style.transform = `translate(${best.x - w}px, ${best.y - h}px)`;
-    if (!outside) taken.push({...best, bad: label.beside ? 20 : 5});
+    if (!outside) taken.push({...best, bad: 20});
   }
+}
+
+// A browser keeps some sixteen scenes alive. One that it has let go shows its still picture until somebody comes back to it;
+// one that is looked at meanwhile begins anew at once, but not twice, or they would push out each other for ever.
+function beginAnewWhenSeenAgain() {
+  const frame = window.frameElement;
+  let away = false;
+  document.body.style.visibility = "hidden";
+  if (frame) new IntersectionObserver(([{isIntersecting}]) => {
+    if (isIntersecting && (away || !frame.dataset.again)) {
+      frame.dataset.again = true;
+      frame.srcdoc += "";
+    }
+    away ||= !isIntersecting;
+  }).observe(document.body);
 }
 
 // Play, pause, and a slider that shows the way from the first state to the last.
@@ -194,7 +239,10 @@ function addPlayer(row, last, seconds, show) {
   slider.setAttribute("aria-label", "Time");
   row.append(slider);
   let before = null;
-  const title = () => button.textContent = before === null ? "▶ Play" : "❚❚ Pause";
+  const title = () => {
+    button.textContent = before === null ? "▶ Play" : "❚❚ Pause";
+    slider.setAttribute("aria-valuetext", `${Math.round(slider.value / last * seconds * 10) / 10} of ${seconds} seconds`);
+  };
   function step(now) {
     if (before === null) return;
     slider.value = Math.min(last, +slider.value + (now - before) / 1000 / seconds * last);

@@ -20,31 +20,38 @@ from .camera import FIELD_OF_VIEW, NEAREST, VIEWS, Camera
 from .drawing import grid
 from .meshcat_commands import block, changes, delete, folder, properties, set_object, set_property, set_transform
 from .picture import webp
-from .shapes import BESIDE
+from .shapes import AROUND, NEAR
 from .shapes import path as node_path
 
 ASPECT = 1.6  # width by height of what is drawn
 MOST_CHOICES = 40  # of fixed frames to choose from
 ROW = 30  # height of a row of controls, in pixels
 HERE = Path(__file__).parent
+SAFE = str.maketrans("&<>`$", ",./:[")  # for digits of base 85 that mean something in HTML or in a script
 # of meshcat's viewer: what makes films (ccapture.js), and what reads files of meshes (OBJ, MTL, Collada, STL)
 UNUSED = {"583", "549", "468", "617", "973", "23", "976", "476"}
+# In the place of its menu (dat.gui), which these pages do not show: an object that does nothing, whatever is asked of it.
+NO_MENU = """376:(e,t,n)=>{
+const one=()=>document.createElement("i"),element=()=>{const made=one();made.append(one());made.removeChild=()=>{};return made};
+const get=(_,name)=>name==="domElement"?element():menu,menu=new Proxy(class{},{get,apply:()=>menu,construct:()=>menu});
+n.d(t,{ZP:()=>menu})},"""
 
 
 @functools.cache
 def script():
     """Return the text that draws scenes (the page's elements, meshcat's viewer, page.js), packed, and its digest."""
-    elements, code = _read("scene.html").replace("ROW", str(ROW), 1), _read("page.js")
-    text = f"document.body.innerHTML = {json.dumps(elements)};\n{_viewer()}\n{code}".encode()
-    return _packed(text), base64.b64encode(hashlib.sha256(text).digest()).decode("ascii")
+    elements, places = _read("scene.html").replace("ROW", str(ROW), 1), {"near": NEAR, "around": AROUND}
+    body, places = f"document.body.innerHTML = {json.dumps(elements)};", f"const PLACES = {json.dumps(places)};"
+    text = "\n".join([body, _viewer(), places, _read("page.js")]).encode()
+    return packed(text), base64.b64encode(hashlib.sha256(text).digest()).decode("ascii")
 
 
 def _viewer():
-    """Return meshcat's viewer, a bundle of numbered modules, without those that these pages never use."""
+    """Return meshcat's viewer, a bundle of numbered modules, without those that these pages do not use."""
     bundle = (folder() / "viewer/dist/main.min.js").read_text(encoding="utf-8")
     modules = re.split(r"(?<=[{,])(?=\d+:(?:function\(|\([\w,]*\)=>|\w=>))", bundle)
-    numbered = ((module.partition(":")[0], module) for module in modules)
-    return "".join(f"{number}:()=>{{}}," if number in UNUSED else module for number, module in numbered)
+    empty = {number: f"{number}:()=>{{}}," for number in UNUSED} | {"376": NO_MENU}
+    return "".join(empty.get(module.partition(":")[0], module) for module in modules)
 
 
 def _read(name):
@@ -52,18 +59,20 @@ def _read(name):
     return re.sub(r"\n\s+", "\n", re.sub(r" *// .*", "", (HERE / name).read_text(encoding="utf-8")))
 
 
-def _packed(data):
-    return base64.b64encode(gzip.compress(data, 9, mtime=0)).decode("ascii")
+def packed(data):
+    """Return bytes as a text for a script in an attribute; `unpacked` of page.html is the way back."""
+    return base64.b85encode(gzip.compress(data, 9, mtime=0)).decode("ascii").translate(SAFE)
 
 
 def labels(nodes):
-    """Return the labels of `nodes` as the page takes them: first those that have a fixed place."""
+    """Return the labels of `nodes` as the page takes them, in the order in which they choose their places."""
     found = [
         {
             "path": f"meshcat/{node.path}",
             "text": label.text,
+            "subscript": label.subscript,
             "position": np.round(label.position, 6).tolist(),
-            "beside": label.beside,
+            "near": label.near,
             "height": label.height,
             "color": "rgb({:.0f} {:.0f} {:.0f} / {:.3g})".format(
                 *(255 * value for value in label.color[:3]), label.color[3]
@@ -72,7 +81,7 @@ def labels(nodes):
         for node in nodes
         for label in node.labels
     ]
-    return sorted(found, key=lambda label: label["beside"])
+    return sorted(found, key=lambda label: [None, *NEAR].index(label["near"]))
 
 
 def render(drawing, fixed_frame, seen_from, motion=None, states=(), live=None, carries=True):
@@ -111,12 +120,11 @@ def render(drawing, fixed_frame, seen_from, motion=None, states=(), live=None, c
         "fov": math.degrees(FIELD_OF_VIEW),
         "nearest": NEAREST,
         "labels": found,
-        "beside": BESIDE,
         "text": drawing.text,
     }
-    scene = _packed(block([json.dumps(view).encode()]) + b"".join(blocks))
-    packed, digest = script()
-    carried = _read("carried.js").replace("PACKED", packed, 1) if carries else ""
+    scene = packed(block([json.dumps(view).encode()]) + b"".join(blocks))
+    whole, digest = script()
+    carried = _read("carried.js").replace("PACKED", whole, 1) if carries else ""
     parts = {"DIGEST": digest, "CARRIED": carried, "SCENE": scene}
     return re.sub("|".join(parts), lambda found: parts[found[0]], _read("page.html"))
 
@@ -167,7 +175,7 @@ def over_picture(page, picture, description, caption, rows, carries=True):
         '<figure style="margin: 0; max-width: 760px">'
         f'<div style="position: relative; aspect-ratio: {ASPECT:g}; background: white; margin-bottom: {rows * ROW}px">'
         f"{_image(picture, description)}"
-        f'<iframe srcdoc="{html.escape(page)}" title="{html.escape(caption)}" loading="{"eager" if carries else "lazy"}"'
+        f'<iframe srcdoc="{html.escape(page)}" title="The scene, to be turned" loading="{"eager" if carries else "lazy"}"'
         f' style="position: absolute; left: 0; top: 0; width: 100%; height: calc(100% + {rows * ROW}px); border: 0"></iframe>'
         f"</div><figcaption>{html.escape(caption)}</figcaption></figure>"
     )

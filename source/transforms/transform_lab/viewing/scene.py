@@ -65,6 +65,14 @@ class Gripper:
 
 
 @dataclass(frozen=True, eq=False)
+class Hand:
+    """A right hand whose index finger, middle finger and thumb lie along the x, y and z axes of `frame`, `length` metres long."""
+
+    frame: str
+    length: float
+
+
+@dataclass(frozen=True, eq=False)
 class Published:
     """A marker, and `place`, the 4x4 root_T_frame of its frame when it was published; None while that is not known, and
     for one that is locked to its frame.
@@ -81,7 +89,7 @@ class Scene:
         self.root = _name(fixed_frame, "fixed_frame")
         length = None if length is None else _size(length, "the length of the fixed frame's axes")
         self.frames = {fixed_frame: Frame(None, np.eye(4), length, ghost)}
-        self.points, self.arrows, self.boxes, self.grippers, self.markers = {}, {}, {}, {}, {}
+        self.points, self.arrows, self.boxes, self.grippers, self.hands, self.markers = {}, {}, {}, {}, {}, {}
         self.remarks = {}  # what RViz says of markers, drawn or not, by their ns and id
         self._text, self._fixed_frame = "", fixed_frame
 
@@ -210,6 +218,15 @@ class Scene:
         self.grippers[frame] = Gripper(frame, opening, rgba(color, f"add_gripper({frame!r}): the color"), bool(ghost))
         self._changed()
 
+    def add_hand(self, frame=None, length=0.1):
+        """Draw a right hand on `frame`, by default the root: index finger along x, middle finger along y, thumb along z.
+
+        `length` is that of these fingers, in metres.
+        """
+        frame = self._known(frame, f"add_hand({frame!r}): the frame")
+        self.hands[frame] = Hand(frame, _size(length, f"add_hand({frame!r}): length"))
+        self._changed()
+
     def publish(self, marker):
         """Draw a visualization_msgs/Marker, as publishing it to RViz does; the same ns and id replace each other.
 
@@ -261,6 +278,23 @@ class Scene:
         source = scene.in_root(scene._known(source_frame, "lookup: the source frame"))
         return tft.inverse_matrix(target) @ source
 
+    def path(self, target_frame, source_frame):
+        """Return the names of the frames on the way in the tree from `target_frame` to `source_frame`, both among them.
+
+        It leads from the target to their common ancestor, and from there to the source.
+        Raises ValueError for a frame that is not known.
+        """
+        scene = self.state()
+        ways = []
+        for name, what in ((target_frame, "path: the target frame"), (source_frame, "path: the source frame")):
+            way = [scene._known(name, what)]
+            while way[-1] != scene.root:
+                way.append(scene.frames[way[-1]].parent)
+            ways.append(way)
+        down, up = ways
+        meeting = next(name for name in down if name in up)
+        return [*down[: down.index(meeting)], *reversed(up[: up.index(meeting) + 1])]
+
     def in_root(self, name):
         """Return the 4x4 transform of a known frame in the root frame."""
         root_T_frame = np.eye(4)
@@ -288,6 +322,9 @@ class Scene:
             lines.append(f"box {name} in {box.frame}: middle ({where}), {' x '.join(f'{v:.4g}' for v in box.size)} m")
         for gripper in self.grippers.values():
             lines.append(f"gripper on {gripper.frame}: opening {gripper.opening:.4g} m")
+        lines += [
+            f"right hand on {hand.frame}: index finger x, middle finger y, thumb z" for hand in self.hands.values()
+        ]
         lines += [_describe_marker(published.marker) for published in self.markers.values()]
         lines += self.said(everything=True)
         return "\n".join(lines + ([self.text] if self.text else []))
@@ -340,7 +377,7 @@ class Scene:
         frame = self._known(frame, f"{what}: the {kind}")
         pose = libraries.taken(pose) if libraries.is_matrix(pose) else pose
         if hasattr(pose, "orientation"):
-            matrix = _pose_matrix(pose, f"{what}: the pose")
+            matrix = pose_matrix(pose, f"{what}: the pose")
         else:
             matrix = rigid_transform(pose, f"{what}: the transform")
         within_reach(matrix[:3, 3], f"{what}: the translation")
@@ -380,7 +417,7 @@ def _position(value, what):
     return within_reach(coordinates[:3], what)
 
 
-def _pose_matrix(pose, what):
+def pose_matrix(pose, what):
     """Return the 4x4 matrix of a Pose whose orientation has length 1; `what` starts the error messages."""
     q, p = pose.orientation, pose.position
     for value, names in ((q, "xyzw"), (p, "xyz")):

@@ -18,6 +18,7 @@ DARK = (0.15, 0.15, 0.2, 1)
 CORNERS = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])  # of the unit box
 GREY = (0.55, 0.55, 0.6, 1)
 ORANGE, PURPLE = (0.93, 0.49, 0.0, 1), (0.52, 0.18, 0.66, 1)  # points and arrows
+SKIN = (0.90, 0.72, 0.58, 1)  # a hand
 BROWN, STEEL = (0.76, 0.62, 0.42, 1), (0.38, 0.42, 0.48, 1)  # boxes and grippers
 
 
@@ -53,23 +54,39 @@ class Mesh:
 
 @dataclass
 class Label:
-    """Text at a position (3 numbers), or `beside` it: wherever around it no other label stands.
+    """Text at a position (3 numbers), with a subscript; or near it, wherever no other label stands.
 
-    `height` is that of a capital letter, in metres, and the text a marker's; by default it is as large as text on a page.
+    near: one of the keys of NEAR; by default it stands at its position
+    height: that of a capital letter, in metres, and the text a marker's; by default it is as large as text on a page
     """
 
     text: str
     position: np.ndarray
     color: tuple = DARK
-    beside: bool = False
+    near: str | None = None
     height: float | None = None
+    subscript: str = ""
 
 
-# Where a label stands beside its position: to the right (in half widths of the text) and up (in lines), best first.
-# It takes the first place at which it covers least: a mark of the drawing counts 1, a letter 5, another name or the
-# edge of the picture 20.
-BESIDE = [(0, -1.2), (-1.2, -0.8), (1.2, -0.8), (0, -2.2), (-1.3, 0), (1.3, 0), (-1.2, 0.8), (1.2, 0.8), (0, 1.2)]
-BESIDE += [(-1.2, -1.8), (1.2, -1.8), (-1.2, 1.8), (1.2, 1.8), (0, 2.2), (0, -3.2), (0, 3.2), (0, -4.2)]
+# Where a label stands near its position, best first: a thing's name to the right (in half widths of the text) and up (in lines);
+# a letter at the tip of its axis on along the axis and to its left, in lines. It takes the first place at which it covers least:
+# a mark of the drawing counts 1, another label or the edge of the picture 20. Letters choose before names. Where all of these are
+# taken, there is AROUND: to the right and up, in lines.
+NEAR = {
+    "tip": [
+        *((0, 0), (0.8, 0), (0, 0.9), (0, -0.9), (0.8, 0.9), (0.8, -0.9), (1.7, 0), (0, 1.8), (0, -1.8), (-0.8, 1), (-0.8, -1)),
+    ],
+    "thing": [
+        *((0, -1.2), (-1.2, -0.8), (1.2, -0.8), (0, -2.2), (-1.3, 0), (1.3, 0), (-1.2, 0.8), (1.2, 0.8), (0, 1.2)),
+        *((-1.2, -1.8), (1.2, -1.8), (-1.2, 1.8), (1.2, 1.8), (0, 2.2), (0, -3.2), (0, 3.2), (0, -4.2)),
+    ],
+}  # fmt: skip
+AROUND = [
+    (round(far * math.sin(math.radians(turn)), 2), round(far * math.cos(math.radians(turn)), 2))
+    for far in (2.5, 3.5, 4.5, 5.5)
+    for turn in range(0, 360, 30)
+]
+LONGEST_SUBSCRIPT = 10  # letters
 
 
 @dataclass
@@ -133,25 +150,33 @@ def arrow(tail, tip, color, shaft, head, head_length):
     return rod(tail, neck, shaft, color) + rod(neck, tip, head, color, "cone")
 
 
-def frame_node(name, transform, length, ghost=False):
+def frame_node(name, transform, length, ghost=False, alone=True):
     """Return a Node with a frame's three axes, the letters at their tips, and its name.
 
-    A ghost is translucent and thicker, so that a solid frame at the same place is seen inside it.
+    A ghost is translucent and thicker, so that a solid frame at the same place is seen inside it. Where a frame is not `alone`,
+    its letters have its name as a subscript.
     """
-    solids, letters = _axes(length, ghost)
-    labels = [*letters, Label(name, np.zeros(3), beside=True)]
+    solids, letters = _axes(length, ghost, "" if alone else subscript(name))
+    labels = [*letters, Label(name, np.zeros(3), near="thing")]
     return Node(path("frames", name), transform, list(solids), labels=labels)
 
 
+def subscript(name):
+    """Return the name of a frame as a subscript: "A" for "frame_a", "base" for "base_link"."""
+    short = name.removeprefix("frame_").removesuffix("_link")
+    short = short.upper() if len(short) == 1 else short
+    return short if len(short) <= LONGEST_SUBSCRIPT else f"{short[: LONGEST_SUBSCRIPT - 1]}…"
+
+
 @functools.lru_cache(50)
-def _axes(length, ghost):
-    """Return the solids and the letters of a frame's axes, which are the same in every frame of a scene."""
+def _axes(length, ghost, subscript):
+    """Return the solids and the letters of a frame's axes."""
     solids, letters = [], []
     thick = length * (2.2 if ghost else 1)
-    for letter, axis, color in zip("XYZ", np.eye(3), (X_RED, Y_GREEN, Z_BLUE)):
+    for letter, axis, color in zip("xyz", np.eye(3), (X_RED, Y_GREEN, Z_BLUE)):
         shown = translucent(color) if ghost else color
         solids += arrow((0, 0, 0), length * axis, shown, 0.05 * thick, 0.13 * thick, 0.24 * length)
-        letters.append(Label(letter, (1.25 if ghost else 1.12) * length * axis, color))
+        letters.append(Label(letter, (1.25 if ghost else 1.12) * length * axis, color, "tip", subscript=subscript))
     solids.append(placed("sphere", (0, 0, 0), 0.08 * thick, translucent(DARK) if ghost else DARK))
     return solids, letters
 
@@ -169,6 +194,26 @@ def gripper_node(gripper, transform):
     parts += [((-0.088, 0, 0), (0.03, 0.12, 0.04), color), ((-0.123, 0, 0), (0.04, 0.05, 0.04), color)]
     for middle, size, shade in parts:
         node.solids.append(placed("box", unit * np.array(middle), unit * np.array(size), shade))
+    return node
+
+
+def hand_node(hand, transform):
+    """Return a Node with a right hand at `transform`: index finger along x, middle finger along y, thumb along z.
+
+    The other two fingers are closed. Its proportions are those of a hand whose index finger is 9 cm long.
+    """
+    node = Node(path("hands", hand.frame), transform)
+    unit = hand.length / 0.09  # so that what follows is in metres for such a hand
+    bones = [((0, 0, 0), (0.078, 0, 0)), ((0, 0, 0), (0, 0.08, 0)), ((0, 0, 0), (0, 0, 0.075))]
+    for low in (-0.022, -0.044):
+        joints = [(-0.005, 0, low), (0.028, 0.012, low), (0.012, 0.036, low), (-0.02, 0.026, low)]
+        bones += list(zip(joints, joints[1:]))
+    for start, end in bones:
+        start, end = unit * np.array(start), unit * np.array(end)
+        node.solids += rod(start, end, 0.019 * unit, SKIN)
+        node.solids += [placed("sphere", joint, 0.019 * unit, SKIN) for joint in (start, end)]
+    node.solids.append(placed("box", unit * np.array([-0.045, 0, -0.022]), unit * np.array([0.08, 0.024, 0.066]), SKIN))
+    node.solids += rod(unit * np.array([-0.08, 0, -0.022]), unit * np.array([-0.17, 0, -0.022]), 0.045 * unit, SKIN)
     return node
 
 
