@@ -1196,7 +1196,6 @@ def many_cells(folder, notebook, course):
     put(folder, notebook)
 
 
-ODD_IDS = ["", "a b", "x" * 99, None, 7, [], {}]
 MARKDOWN = {
     "cell_type": "markdown",
     "id": "shown",
