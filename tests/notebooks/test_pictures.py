@@ -116,6 +116,9 @@ SAID = {
         ("the third\narrow come towards you", "two-axes-view", lambda p: p.toward(p.arrow("z of B")) > 0.9)],
     ("1_rotation", "which"): [
         ("the numbers in the corner", "which-drag", lambda p: len(numbers(p)) == 10)],
+    ("1_rotation", "which-say"): [
+        ("the numbers in the corner above, is the dot product", "which-drag", lambda p: len(numbers(p)) == 10),
+    ],
     ("1_rotation", "diagonal-unfold"): [
         ("Frame A is drawn pale", "diagonal-view", lambda p: p.pale() == {"frame_a"})],
     ("1_rotation", "mistakes"): [

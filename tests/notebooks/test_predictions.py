@@ -39,7 +39,8 @@ def answer(page, *typed):
         (VECTOR, ("2", "left", "0"), "✗ Write a number for y"),
         (NUMBER, ("0.71",), "✓ Yes"),
         (NUMBER, ("0.7071°",), "✓ Yes"),
-        (NUMBER, ("0.7",), "✗ Not yet"),
+        (NUMBER, ("0.7",), "✓ Yes"),
+        (NUMBER, ("0.69",), "✗ Not yet"),
         (NUMBER, ("1/2",), "✗ Half of it <b>squared</b>."),
         (NUMBER, ("1/0",), "✗ Not yet"),
         (NUMBER, ("half",), "✗ Write a number, such as"),
@@ -81,7 +82,7 @@ def test_two_on_one_page_do_not_disturb_each_other(page):
     page.set_content(place(*VECTOR) + place(*TEXT) + place(*NUMBER))
     assert page.locator("form").count() == 3 and page.locator("input").count() == 4
     page.get_by_text("the index finger").click()
-    assert page.locator("output").all_inner_texts() == ["", "✓ Yes. Unfold the answer: is it your reason, too?", ""]
+    assert page.locator("output").all_inner_texts() == ["", "✓ Yes. Read on: is it your reason, too?", ""]
 
 
 def test_without_scripts_an_answer_on_paper_is_asked_for(browser):

@@ -17,7 +17,7 @@ from transform_lab.viewing.markers import ERROR, INFO, OURS, UNINITIALIZED, UNNO
 from transform_lab.viewing.viewer import Viewer
 
 BOX = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
-WIDTH, HEIGHT = 792, 495  # of our pictures
+WIDTH, HEIGHT = round(picture.HEIGHT * page.ASPECT), picture.HEIGHT  # of our pictures
 B_IN_A = (0, 0.5, 0.5)  # the origin of frame_b
 LEVELS_UP = [INFO, WARNING, ERROR]
 LEVELS = {2: INFO, 4: WARNING, 8: ERROR}  # of rosgraph_msgs/Log

@@ -8,6 +8,7 @@ all wrong (`cheat`: 0 points stay). Words in capitals between @ stand for what i
 import copy
 import html
 import html.parser
+import itertools
 import json
 import os
 import re
@@ -1243,7 +1244,11 @@ NOTEBOOKS = [
     files("one id for all cells", changed(lambda cells: [c | {"id": "same"} for c in cells])),
     files(
         "odd ids",
-        changed(lambda cells: [c | {"id": odd} for c, odd in zip(cells, ["", "a b", "x" * 99, None, 7, [], {}] * 9)]),
+        changed(
+            lambda cells: [
+                c | {"id": odd} for c, odd in zip(cells, itertools.cycle(["", "a b", "x" * 99, None, 7, [], {}]))
+            ]
+        ),
     ),
     files("script in text and attachments", changed(lambda cells: cells + [MARKDOWN])),
     files(

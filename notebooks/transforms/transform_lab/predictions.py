@@ -19,14 +19,14 @@ __all__ = ["predict"]
 
 # A place hands itself to the script, which may come later, with another place; in VS Code no script finds what is in outputs.
 REACHED = "(window.transformLabPredictions ??= []).push(this.parentNode)"
-ON_PAPER = "answer on paper, then unfold the answer below."
+ON_PAPER = "answer on paper, then read on."
 
 
 def predict(answer, wrong=(), ask="Your answer", names="xyzw"):
     """Show a place to type or click an answer; it is compared in the page itself.
 
-    answer: a number; several, as a list or an array, each of which has a field of its own, to half a hundredth (of large ones,
-        half a percent); or a text, which is chosen among the `wrong` ones
+    answer: a number; several, as a list or an array, each of which has a field of its own, to a hundredth (of large ones, a
+        percent); or a text, which is chosen among the `wrong` ones
     wrong: {wrong answer: why it is wrong, in a sentence}; several numbers as a tuple
     ask: what the place is for, a few words before it
     names: those of several numbers

@@ -10,7 +10,7 @@
       said.textContent = `${good ? "✓" : "✗"} ${words}`;
     };
     const button = text => Object.assign(document.createElement("button"), {type: "button", textContent: text});
-    const yes = "Yes. Unfold the answer: is it your reason, too?", no = "Not yet. Look again, or unfold the answer.";
+    const yes = "Yes. Read on: is it your reason, too?", no = "Not yet. Look again, or read on.";
     Object.assign(form.style, {display: "flex", flexWrap: "wrap", gap: "6px", alignItems: "baseline", margin: "4px 0"});
     form.onsubmit = () => false;
     if (typeof right === "string") {
@@ -31,7 +31,7 @@
       const [, top, , below] = plain.match(/^(-?\d*\.?\d+)(\/(\d*\.?\d+))?°?$/) ?? [];
       return top === undefined ? NaN : top / (below ?? 1);
     };
-    const close = (one, other) => Math.abs(one - other) <= 0.00501 * Math.max(1, Math.abs(other));
+    const close = (one, other) => Math.abs(one - other) <= 0.01001 * Math.max(1, Math.abs(other));
     if (right.length === 1) names[0] = "";
     const fields = right.map((_, i) => {
       const field = Object.assign(document.createElement("input"), {size: 6, autocomplete: "off", inputMode: "text"});
