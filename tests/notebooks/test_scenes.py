@@ -132,7 +132,8 @@ def test_on_paper_the_still_pictures_are_printed(page, server):
     notebook.run_all()
     scene = notebook.scene(notebook.figures()[0])
     page.emulate_media(media="print")
-    assert scene.evaluate("getComputedStyle(document.body).visibility") == "hidden"
+    hidden = "[...document.querySelectorAll('body, .label')].map(one => getComputedStyle(one).visibility)"
+    assert set(scene.evaluate(hidden)) == {"hidden"}
     assert re.match(
         "rgba\\(0, 0, 0, 0\\)|transparent", scene.evaluate("getComputedStyle(document.body).backgroundColor")
     )

@@ -211,7 +211,7 @@ function placeLabels(labels, viewer, pane, view, object) {
       if (place.bad < best.bad) best = place;
     }
     const outside = depth < viewer.camera.near || x < 0 || y < 0 || x > width || y > height;
-    style.visibility = outside ? "hidden" : "visible";
+    style.visibility = outside ? "hidden" : "";  // as the pane, which is hidden on paper
     style.transform = `translate(${best.x - w}px, ${best.y - h}px)`;
     if (!outside) taken.push({...best, bad: 20});
   }
